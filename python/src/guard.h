@@ -15,10 +15,12 @@ class Busy {
   class Use {
    public:
     explicit Use(Busy& busy) : lock_(busy.mutex_, std::try_to_lock) {
-      if (!lock_.owns_lock()) throw std::runtime_error("this object is at work in another thread");
+      if (!lock_.owns_lock())
+        throw std::runtime_error(
+            "this object is at work already, in another thread or in the call that this one interrupts");
       if (getpid() != busy.process_)
         throw std::runtime_error(
-            "this object was made in another process, whose threads were not inherited: make it anew");
+            "this object was made in another process, whose threads were not inherited: make it anew here");
     }
 
    private:

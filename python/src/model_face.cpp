@@ -14,14 +14,18 @@ namespace supple::python {
 namespace {
 
 Tetrahedra tetrahedra_of(const py::object& array) {
-  const auto numbers = py::array_t<std::int64_t, py::array::c_style>::ensure(array);
-  PyErr_Clear();
-  if (!numbers || numbers.ndim() != 2 || numbers.shape(1) != 4 || py::array(array).dtype().kind() == 'f')
+  const py::array given = py::array::ensure(array);
+  if (!given) PyErr_Clear();
+  if (!given || given.ndim() != 2 || given.shape(1) != 4 ||
+      (given.dtype().kind() != 'i' && given.dtype().kind() != 'u'))
     throw InputError("tetrahedra", "is no array of m x 4 whole numbers");
+  const auto numbers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(given);
   Tetrahedra result(numbers.shape(0), 4);
   for (Eigen::Index i = 0; i < result.size(); ++i) {
     const std::int64_t v = numbers.data()[i];
-    result.data()[i] = v < 0 || v > INT32_MAX ? -1 : static_cast<std::int32_t>(v);
+    if (v < 0 || v > INT32_MAX)
+      throw InputError("tetrahedra", fmt::format("element {}: there is no vertex {}", i / 4, v));
+    result.data()[i] = static_cast<std::int32_t>(v);
   }
   return result;
 }
@@ -91,12 +95,10 @@ ModelFace::ModelFace(const py::object& vertices, const py::object& tetrahedra, c
     Handle handle{"pinned", {}, pin_stiffness.is_none() ? 0 : pin_stiffness.cast<double>()};
     if (!pin_stiffness.is_none() && !(handle.stiffness > 0 && std::isfinite(handle.stiffness)))
       throw InputError("pin_stiffness", "must be above 0 [N/m], or None");
+    handle.vertices = vertices_of(pinned, "pinned", rest.rows());
     std::vector<char> taken(std::size_t(rest.rows()), 0);
-    for (const py::handle& item : pinned) {
-      const auto v = item.cast<std::int64_t>();
-      if (v < 0 || v >= rest.rows()) throw InputError("pinned", fmt::format("there is no vertex {}", v));
+    for (const std::int32_t v : handle.vertices) {
       if (std::exchange(taken[std::size_t(v)], 1) != 0) throw InputError("pinned", fmt::format("vertex {} twice", v));
-      handle.vertices.push_back(static_cast<std::int32_t>(v));
     }
     this->pinned = handle.vertices;
     if (!handle.vertices.empty()) body.handles = {handle};

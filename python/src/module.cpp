@@ -52,6 +52,20 @@ void translate(std::exception_ptr thrown) {
   }
 }
 
+// Makes a function of a member. An object that was not made by its __init__ has no holder, and is refused.
+template <class Face, class Result, class... Arguments>
+auto safe(Result (Face::*member)(Arguments...)) {
+  return [member](const std::shared_ptr<Face>& self, Arguments... arguments) -> Result {
+    return ((*self).*member)(std::forward<Arguments>(arguments)...);
+  };
+}
+template <class Face, class Result, class... Arguments>
+auto safe(Result (Face::*member)(Arguments...) const) {
+  return [member](const std::shared_ptr<Face>& self, Arguments... arguments) -> Result {
+    return ((*self).*member)(std::forward<Arguments>(arguments)...);
+  };
+}
+
 py::array pixels_of(const Image& image) {
   const py::ssize_t channels = image.alpha.empty() ? 3 : 4, pixels = py::ssize_t(image.width) * image.height;
   py::array_t<std::uint8_t> array({py::ssize_t(image.height), py::ssize_t(image.width), channels});
@@ -94,6 +108,7 @@ class FilmFace {
   }
 
   void add(const py::array_t<std::uint8_t, py::array::c_style>& picture) {
+    const Busy::Use use(busy_);
     if (thread_ != std::this_thread::get_id()) throw std::runtime_error("a film is made in one thread");
     if (closed_) throw std::runtime_error("the film is closed");
     if (picture.ndim() != 3 || picture.shape(2) != 3 || (encoder_ && size_ != size_of(picture)))
@@ -108,7 +123,9 @@ class FilmFace {
   }
 
   void close() {
+    const Busy::Use use(busy_);
     if (thread_ != std::this_thread::get_id()) throw std::runtime_error("a film is made in one thread");
+    if (!closed_ && !encoder_) warn(path_.string() + ": no picture was added, so there is no film");
     const py::gil_scoped_release others_run;
     if (!std::exchange(closed_, true) && encoder_) end();
   }
@@ -125,6 +142,7 @@ class FilmFace {
     throw RunError(fmt::format("{}: {} {}", path_.string(), result.reason, result.told));
   }
 
+  Busy busy_;
   std::filesystem::path path_;
   double fps_;
   FilmCoding coding_;
@@ -135,9 +153,11 @@ class FilmFace {
 };
 
 void define_world(py::module_& m) {
-  py::class_<WorldState>(m, "WorldState", "A state of a world between two frames, for World.restore().")
+  py::class_<Snapshot, std::shared_ptr<Snapshot>>(m, "WorldState",
+                                                  "A state of a world between two frames, for World.restore().")
       .def_property_readonly(
-          "frame", [](const WorldState& state) { return state.frames; }, "Number of frames made.");
+          "frame", [](const std::shared_ptr<Snapshot>& snapshot) { return snapshot->state.frames; },
+          "Number of frames made.");
   py::class_<WorldFace, std::shared_ptr<WorldFace>>(m, "World", R"(A scene in time.
 
 scene: the file of a scene, a replay or a model, the name of a scene that ships, or a dict that says what such a file
@@ -145,26 +165,26 @@ says. set: values in place of the scene's, by their paths, as --set takes them. 
 Raises InputError with all that is wrong; a scene's warnings are issued as SuppleWarning.)")
       .def(py::init<const py::object&, const py::dict&, int>(), py::arg("scene"), py::kw_only(),
            py::arg("set") = py::dict(), py::arg("threads") = 0)
-      .def("step", &WorldFace::step, py::arg("frames") = 1, py::kw_only(), py::arg("errors") = false,
+      .def("step", safe(&WorldFace::step), py::arg("frames") = 1, py::kw_only(), py::arg("errors") = false,
            R"(Makes the steps of the next frames, 1 / fps seconds each.
 
 errors: the last step of each frame is also solved to the end, so that error() knows how far off it was.
 Other threads of Python run meanwhile. Raises StepFailed, and KeyboardInterrupt between two substeps; the next step()
 then finishes the frame.)")
-      .def_property_readonly("frame", &WorldFace::frame, "Number of frames that were made.")
-      .def_property_readonly("time", &WorldFace::time, "Time after these frames [s].")
-      .def_property_readonly("fps", &WorldFace::fps, "Frames a second.")
-      .def_property_readonly("report", &WorldFace::report, R"(What the steps of the last frame know of themselves.
+      .def_property_readonly("frame", safe(&WorldFace::frame), "Number of frames that were made.")
+      .def_property_readonly("time", safe(&WorldFace::time), "Time after these frames [s].")
+      .def_property_readonly("fps", safe(&WorldFace::fps), "Frames a second.")
+      .def_property_readonly("report", safe(&WorldFace::report), R"(What the steps of the last frame know of themselves.
 
 A dict with step_ms [ms], bodies (by name: milliseconds by phase, iterations, estimates of the errors, contacts; the
 names are those of profile.json) and pairs (bodies that touch: contacts, depth [m], force of the first on the second
 [N]).)")
-      .def("error", &WorldFace::error, R"(Returns how far the last step was from its solution, by body.
+      .def("error", safe(&WorldFace::error), R"(Returns how far the last step was from its solution, by body.
 
 error: that of equation 12 of Liu et al. 2017, or None where the step began at its solution. motion_error: how far the
 solved motion is, over the step's own motion. Raises RuntimeError unless step(errors=True) made the frame.)")
-      .def_property_readonly("warnings", &WorldFace::warnings, "What is legal but unwise in the scene, in words.")
-      .def_property_readonly("live", &WorldFace::live, "The paths of the values that set() can change.")
+      .def_property_readonly("warnings", safe(&WorldFace::warnings), "What is legal but unwise in the scene, in words.")
+      .def_property_readonly("live", safe(&WorldFace::live), "The paths of the values that set() can change.")
       .def_property_readonly(
           "bodies",
           [](const std::shared_ptr<WorldFace>& world) {
@@ -174,35 +194,41 @@ solved motion is, over the step's own motion. Raises RuntimeError unless step(er
             return bodies;
           },
           "The bodies by name, in the order of the scene.")
-      .def("set", &WorldFace::change, py::arg("path"), py::arg("value"), py::kw_only(), py::arg("over") = 0.0,
+      .def("set", safe(&WorldFace::change), py::arg("path"), py::arg("value"), py::kw_only(), py::arg("over") = 0.0,
            py::arg("ease") = "smooth", py::arg("by") = "difference", py::arg("start") = py::none(),
            R"(Changes a value from the next frame on, as a [[change]] of a replay does.
 
 path, value: as set in World(). over: how long the change takes [s]; 0: it jumps. ease: "smooth" or "linear". by:
 "difference" or "ratio". start: where a ramp begins; else the value in force. Raises InputError; nothing changes then.)")
-      .def("_grab", &WorldFace::grab)
-      .def("_move", &WorldFace::move)
-      .def("_release", &WorldFace::release)
-      .def("state", &WorldFace::state, "Returns the state of the world, which restore() takes.")
-      .def("restore", &WorldFace::restore, py::arg("state"), R"(Goes back, or forward, to a state.
+      .def("_grab", safe(&WorldFace::grab))
+      .def("_move", safe(&WorldFace::move))
+      .def("_release", safe(&WorldFace::release))
+      .def("state", safe(&WorldFace::state), "Returns the state of the world, which restore() takes.")
+      .def(
+          "restore",
+          [](const std::shared_ptr<WorldFace>& world, const std::shared_ptr<Snapshot>& state) {
+            if (!state) throw py::type_error("state: None is no state");
+            world->restore(*state);
+          },
+          py::arg("state"), R"(Goes back, or forward, to a state.
 
 It may be of another world of the same scene. What was set and grabbed after it is forgotten.)")
-      .def("hash", &WorldFace::hash, "Returns the hash of all positions and velocities, as profile.json has it.")
-      .def("save_replay", &WorldFace::save_replay, py::arg("path"),
+      .def("hash", safe(&WorldFace::hash), "Returns the hash of all positions and velocities, as profile.json has it.")
+      .def("save_replay", safe(&WorldFace::save_replay), py::arg("path"),
            R"(Writes all that was done to this world as a replay.
 
 `supple replay` makes the same frames of it, to the last bit. A scene from a dict is written beside it.)")
-      .def("_pixels", [](WorldFace& world, const py::object& camera, const py::object& size,
-                         const py::dict& set) { return pixels_of(world.draw(picture_settings(camera, size, set))); })
-      .def("_png", [](WorldFace& world, const py::object& camera, const py::object& size, const py::dict& set) {
-        return png_of(world.draw(picture_settings(camera, size, set)));
-      });
+      .def("_pixels", [](const std::shared_ptr<WorldFace>& world, const py::object& camera, const py::object& size,
+                         const py::dict& set) { return pixels_of(world->draw(picture_settings(camera, size, set))); })
+      .def("_png", [](const std::shared_ptr<WorldFace>& world, const py::object& camera, const py::object& size,
+                      const py::dict& set) { return png_of(world->draw(picture_settings(camera, size, set))); });
   const auto array = [](py::array (WorldFace::*of)(std::size_t)) {
-    return [of](const BodyFace& body) { return (*body.world.*of)(body.index); };
+    return [of](const std::shared_ptr<BodyFace>& body) { return (*body->world.*of)(body->index); };
   };
-  py::class_<BodyFace>(m, "Body", "A body of a world. Rows are in the order of its mesh's vertices.")
-      .def_readonly("name", &BodyFace::name)
-      .def_property_readonly("world", [](const BodyFace& body) { return body.world; })
+  py::class_<BodyFace, std::shared_ptr<BodyFace>>(m, "Body",
+                                                  "A body of a world. Rows are in the order of its mesh's vertices.")
+      .def_property_readonly("name", [](const std::shared_ptr<BodyFace>& body) { return body->name; })
+      .def_property_readonly("world", [](const std::shared_ptr<BodyFace>& body) { return body->world; })
       .def_property_readonly("positions", array(&WorldFace::positions),
                              "Positions, n x 3 [m]: a view that always shows the present ones, read-only.")
       .def_property_readonly("velocities", array(&WorldFace::velocities), "Velocities, n x 3 [m/s]: a view like that.")
@@ -214,10 +240,13 @@ It may be of another world of the same scene. What was set and grabbed after it 
                              "Vertices of the triangles of the surface, m x 3, anticlockwise from outside.")
       .def_property_readonly("masses", array(&WorldFace::masses), "Mass of each vertex, n [kg].")
       .def_property_readonly(
-          "deformation", [](const BodyFace& body) { return body.world->deformation(body.index); },
+          "deformation", [](const std::shared_ptr<BodyFace>& body) { return body->world->deformation(body->index); },
           "A dict with stretch (99.9th percentile), and numbers of inverted and collapsed elements.")
       .def(
-          "field", [](const BodyFace& body, const std::string& name) { return body.world->field(body.index, name); },
+          "field",
+          [](const std::shared_ptr<BodyFace>& body, const std::string& name) {
+            return body->world->field(body->index, name);
+          },
           py::arg("quantity"), R"(Returns a quantity by vertex, n: "stretch", "compression", "volume", "energy" [J/m^3],
 "stress" [Pa], "speed" [m/s], "depth" [m] or "force" [Pa].)");
 }
@@ -226,6 +255,10 @@ void define_model(py::module_& m) {
   py::class_<CollidersFace, std::shared_ptr<CollidersFace>>(
       m, "Colliders", "Rigid obstacles: a list of dicts, each with the keys of [[collider]] in a scene.")
       .def(py::init<const py::list&>(), py::arg("colliders"));
+  py::class_<StateFace, std::shared_ptr<StateFace>>(m, "State", "Where a model is. What is written counts.")
+      .def_property_readonly("positions", safe(&StateFace::positions), "n x 3 [m], may be written.")
+      .def_property_readonly("velocities", safe(&StateFace::velocities), "n x 3 [m/s], may be written.")
+      .def_property_readonly("time", safe(&StateFace::time), "[s].");
   py::class_<ModelFace, std::shared_ptr<ModelFace>>(m, "Model", R"(A body made of arrays.
 
 vertices: n x 3 [m]. tetrahedra: m x 4 vertices, counted from 0. material: what `material` of a scene's body is, the name
@@ -243,20 +276,18 @@ targets. pin_stiffness: of a spring at each of these [N/m]; None: they are held 
           },
           py::kw_only(), py::arg("threads") = 1, "Returns a state in which the body is at rest.")
       .def_property_readonly(
-          "rest", [](const ModelFace& model) { return copy_of(model.rest); }, "n x 3 [m].")
+          "rest", [](const std::shared_ptr<ModelFace>& model) { return copy_of(model->rest); }, "n x 3 [m].")
       .def_property_readonly(
-          "pinned", [](const ModelFace& model) { return model.pinned; }, "The pinned vertices.")
+          "pinned", [](const std::shared_ptr<ModelFace>& model) { return model->pinned; }, "The pinned vertices.")
       .def_property_readonly(
-          "time_step", [](const ModelFace& model) { return model.model.time_step; }, "[s].");
-  py::class_<StateFace, std::shared_ptr<StateFace>>(m, "State", "Where a model is. What is written counts.")
-      .def_property_readonly("positions", &StateFace::positions, "n x 3 [m], may be written.")
-      .def_property_readonly("velocities", &StateFace::velocities, "n x 3 [m/s], may be written.")
-      .def_property_readonly("time", &StateFace::time, "[s].");
+          "time_step", [](const std::shared_ptr<ModelFace>& model) { return model->model.time_step; }, "[s].");
   m.def(
       "step",
-      [](const ModelFace& model, StateFace& state, const py::object& gravity,
-         const std::shared_ptr<CollidersFace>& colliders,
-         const py::object& targets) { return state.step(model, gravity, colliders.get(), targets); },
+      [](const std::shared_ptr<ModelFace>& model, const std::shared_ptr<StateFace>& state, const py::object& gravity,
+         const std::shared_ptr<CollidersFace>& colliders, const py::object& targets) {
+        if (!model || !state) throw py::type_error("model and state must not be None");
+        return state->step(*model, gravity, colliders.get(), targets);
+      },
       py::arg("model"), py::arg("state"), py::kw_only(), py::arg("gravity") = py::make_tuple(0.0, -9.81, 0.0),
       py::arg("colliders") = nullptr, py::arg("targets") = py::none(), R"(Makes a step of a model.
 
@@ -273,10 +304,13 @@ PYBIND11_MODULE(_supple, m) {
   pybind11::register_exception_translator(python::translate);
   python::define_world(m);
   python::define_model(m);
-  pybind11::class_<python::FilmFace>(m, "Film", "A film that is encoded while its pictures are made, by ffmpeg.")
+  pybind11::class_<python::FilmFace, std::shared_ptr<python::FilmFace>>(
+      m, "Film", "A film that is encoded while its pictures are made, by ffmpeg.")
       .def(pybind11::init<const pybind11::object&, double>(), pybind11::arg("path"), pybind11::arg("fps") = 30.0)
-      .def("add", &python::FilmFace::add, pybind11::arg("picture"), "Adds a picture, height x width x 3 bytes.")
-      .def("close", &python::FilmFace::close, "Ends the film and gives the file its name. Raises RunError.");
+      .def("add", python::safe(&python::FilmFace::add), pybind11::arg("picture"),
+           "Adds a picture, height x width x 3 bytes.")
+      .def("close", python::safe(&python::FilmFace::close),
+           "Ends the film and gives the file its name. Raises RunError.");
   m.def(
       "scenes", [] { return supple::shipped_names("scenes"); }, "Returns the names of the scenes that ship.");
   m.def(

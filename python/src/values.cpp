@@ -61,15 +61,48 @@ std::vector<std::string> settings_of(const py::dict& values) {
 }
 
 std::string path_of(const py::handle& path) {
-  return py::module_::import("os").attr("fspath")(path).cast<std::string>();
+  auto text = py::module_::import("os").attr("fspath")(path).cast<std::string>();
+  if (text.empty() || text.find('\0') != text.npos) throw InputError("path", "is empty, or has a zero in it");
+  return text;
 }
 
-Positions positions_of(const py::handle& array, const std::string& name, Eigen::Index rows) {
-  const auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
-  if (!numbers) {
-    PyErr_Clear();
-    throw InputError(name, "is no array of numbers");
+std::vector<std::int32_t> vertices_of(const py::handle& array, const std::string& name, std::int64_t count) {
+  const py::array given = py::array::ensure(array);
+  if (!given) PyErr_Clear();
+  const char kind = given && given.ndim() == 1 ? given.dtype().kind() : ' ';
+  const bool none = kind != ' ' && given.shape(0) == 0, is_mask = kind == 'b' && given.shape(0) == count;
+  if (!none && !is_mask && kind != 'i' && kind != 'u')
+    throw InputError(name, fmt::format("are to be a list of whole numbers, or {} times yes or no", count));
+  std::vector<std::int32_t> vertices;
+  for (py::ssize_t i = 0; i < given.shape(0); ++i) {
+    const py::object item = given[py::int_(i)];
+    if (is_mask) {
+      if (item.cast<bool>()) vertices.push_back(static_cast<std::int32_t>(i));
+      continue;
+    }
+    const bool fits = py::bool_(py::int_(0) <= item) && py::bool_(item < py::int_(count));
+    if (!fits)
+      throw InputError(name,
+                       fmt::format("there is no vertex {}: 0 to {}", py::str(item).cast<std::string>(), count - 1));
+    vertices.push_back(item.cast<std::int32_t>());
   }
+  return vertices;
+}
+
+namespace {
+
+// Refuses what numpy would turn into numbers although it is none.
+bool is_numeric(const py::handle& array) {
+  const py::array given = py::array::ensure(array);
+  if (!given) PyErr_Clear();
+  return given && (given.size() == 0 || std::string_view("biuf").find(given.dtype().kind()) != std::string_view::npos);
+}
+
+}  // namespace
+
+Positions positions_of(const py::handle& array, const std::string& name, Eigen::Index rows) {
+  if (!is_numeric(array)) throw InputError(name, "is no array of numbers");
+  const auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
   if (numbers.ndim() != 2 || numbers.shape(1) != 3 || (rows >= 0 && numbers.shape(0) != rows)) {
     std::string shape;
     for (py::ssize_t i = 0; i < numbers.ndim(); ++i) shape += fmt::format("{}{}", i > 0 ? " x " : "", numbers.shape(i));
@@ -84,10 +117,9 @@ Positions positions_of(const py::handle& array, const std::string& name, Eigen::
 }
 
 Vec3 vector_of(const py::handle& array, const std::string& name) {
-  const auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
-  PyErr_Clear();
-  if (!numbers || numbers.ndim() != 1 || numbers.shape(0) != 3)
-    throw InputError(name, "is not a list of three numbers");
+  using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+  const Numbers numbers = is_numeric(array) ? Numbers::ensure(array) : Numbers(0);
+  if (numbers.ndim() != 1 || numbers.shape(0) != 3) throw InputError(name, "is not a list of three numbers");
   const Vec3 result(numbers.data()[0], numbers.data()[1], numbers.data()[2]);
   if (!result.allFinite()) throw InputError(name, "is not finite");
   return result;

@@ -28,6 +28,9 @@ std::vector<std::string> settings_of(const py::dict& values);
 // Returns the text of a str or of a path.
 std::string path_of(const py::handle& path);
 
+// Reads numbers of vertices below `count`, or a mask that has one truth for each vertex. Throws InputError.
+std::vector<std::int32_t> vertices_of(const py::handle& array, const std::string& name, std::int64_t count);
+
 // Reads an array of n x 3 finite numbers. rows: the n that is wanted; negative: any. Throws InputError.
 Positions positions_of(const py::handle& array, const std::string& name, Eigen::Index rows = -1);
 // Reads three finite numbers. Throws InputError.

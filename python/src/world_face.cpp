@@ -6,6 +6,8 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/hash.h"
+#include "base/read_file.h"
 #include "base/text.h"
 #include "film/plan/shipped_files.h"
 #include "film/record/body_recorder.h"
@@ -29,11 +31,6 @@ SceneSource source_of(const py::object& source) {
   return scene_file(path_of(source));
 }
 
-void warn(const std::string& text) {
-  const py::object kind = py::module_::import("supple").attr("SuppleWarning");
-  if (PyErr_WarnEx(kind.ptr(), text.c_str(), 1) < 0) throw py::error_already_set();
-}
-
 std::size_t number_of(const World& world, const std::string& body) {
   std::vector<std::string> names;
   for (const Body& one : world.bodies()) names.push_back(one.def.name);
@@ -48,6 +45,11 @@ py::tuple tuple_of(const Vec3& v) { return py::make_tuple(v.x(), v.y(), v.z()); 
 
 }  // namespace
 
+void warn(const std::string& text) {
+  const py::object kind = py::module_::import("supple").attr("SuppleWarning");
+  if (PyErr_WarnEx(kind.ptr(), text.c_str(), 1) < 0) throw py::error_already_set();
+}
+
 WorldFace::WorldFace(const py::object& source, const py::dict& set, int threads) {
   if (threads < 0 || threads > 256) throw InputError("threads", "must be 1 to 256, or 0 for all cores");
   const SceneSource from = source_of(source);
@@ -60,6 +62,8 @@ WorldFace::WorldFace(const py::object& source, const py::dict& set, int threads)
     for (const Problem& problem : said(all_warnings(script, bodies))) warnings_.push_back(problem.text());
     const int all = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     held_ = std::make_unique<Held>(threads > 0 ? threads : all, std::move(script), std::move(bodies));
+    const std::string json = held_->world.script().scene_json() + held_->world.script().replay_json();
+    scene_ = hash_bytes(json.data(), json.size());
     held_->world.start(held_->solvers.steps, &held_->threads);
   }
   held_->errors.emplace(held_->world, held_->solvers, held_->threads);
@@ -231,26 +235,21 @@ void WorldFace::change(const std::string& path, const py::object& value, double 
   held->world.change(std::move(change));
 }
 
-std::string WorldFace::grab(const std::string& body, const std::vector<int>& vertices, double stiffness,
-                            std::string name) {
+std::string WorldFace::grab(const std::string& body, const py::object& vertices, double stiffness, std::string name) {
   const Lock held = whole();
   const std::string place = fmt::format("grab of body '{}'", body);
   const std::size_t number = number_of(held->world, body);
   const std::vector<HandleDef>& handles = held->world.bodies()[number].def.handles;
-  for (std::size_t i = 1; name.empty(); ++i) {
-    const std::string free = fmt::format("grab_{}", i);
+  while (name.empty()) {  // a name is never given twice, so that a hand of a state that was left moves no other one
+    const std::string free = fmt::format("grab_{}", ++grabs_);
     if (std::ranges::find(handles, free, &HandleDef::name) == handles.end()) name = free;
   }
   if (name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") != name.npos)
     throw InputError(place, fmt::format("name '{}': letters, digits, _ and - alone", name));
   if (!(stiffness > 0) || !std::isfinite(stiffness)) throw InputError(place, "stiffness: must be above 0 [N/m]");
   LiveGrab grab{body, name, {}, stiffness};
-  for (const int vertex : vertices) {
-    const int last = held->world.body(number).model().vertices - 1;
-    if (vertex < 0 || vertex > last)
-      throw InputError(place, fmt::format("there is no vertex {}: 0 to {}", vertex, last));
-    grab.vertices.push_back(vertex + 1);
-  }
+  for (const std::int32_t v : vertices_of(vertices, place, held->world.body(number).model().vertices))
+    grab.vertices.push_back(v + 1);
   if (grab.vertices.empty()) throw InputError(place, "no vertices are given");
   held->world.grab(std::move(grab));
   return name;
@@ -258,17 +257,35 @@ std::string WorldFace::grab(const std::string& body, const std::vector<int>& ver
 
 void WorldFace::move(const std::string& body, const std::string& handle, const py::object& move,
                      const py::object& turn_deg) {
-  const Vec3 to = vector_of(move, "move"), turn = vector_of(turn_deg, "turn_deg");
-  py::dict key;
-  key["t"] = 0;
-  key["move"] = tuple_of(to);
-  key["turn_deg"] = tuple_of(turn);
+  bool first = false;
+  {
+    const Lock held = whole();
+    const double now = held->world.frames() / held->world.scene().fps;
+    const std::vector<LiveGrab>& grabs = held->world.script().edits().grabs;
+    const bool holds = std::ranges::any_of(
+        grabs, [&](const LiveGrab& grab) { return grab.body == body && grab.name == handle && grab.until > now; });
+    if (!holds)
+      throw InputError(handle, fmt::format("holds nothing of body '{}': it has let go, or was grabbed after the "
+                                           "state that was restored",
+                                           body));
+    first = held->world.frames() == 0;
+  }
+  const auto key = [](double t, const Vec3& to, const Vec3& turn) {
+    py::dict key;
+    key["t"] = t;
+    key["move"] = tuple_of(to);
+    key["turn_deg"] = tuple_of(turn);
+    return key;
+  };
+  // A change moves evenly over its frame, but before the first frame it holds from the start.
   py::list keys;
-  keys.append(key);
+  if (first) keys.append(key(0, Vec3::Zero(), Vec3::Zero()));
+  keys.append(key(first ? 1 / fps() : 0, vector_of(move, "move"), vector_of(turn_deg, "turn_deg")));
   change(fmt::format("body.{}.handles.{}.keys", body, handle), keys, 0, "smooth", "difference", py::none());
 }
 
-void WorldFace::restore(const WorldState& state) {
+void WorldFace::restore(const Snapshot& snapshot) {
+  const WorldState& state = snapshot.state;
   const Lock held = locked();
   bool suits = state.bodies.size() == held->world.size();
   for (std::size_t b = 0; suits && b < state.bodies.size(); ++b) {
@@ -288,6 +305,7 @@ void WorldFace::restore(const WorldState& state) {
     held->world.restore(state);
   }
   failed_ = false;
+  foreign_ = snapshot.foreign || snapshot.scene != scene_;
   rows_.clear();
   measured_.clear();
   refresh();
@@ -296,14 +314,27 @@ void WorldFace::restore(const WorldState& state) {
 void WorldFace::save_replay(const py::object& path) {
   const Lock held = whole();
   if (held->world.frames() == 0) throw std::runtime_error("no frame was made that a replay could repeat");
-  const std::filesystem::path file = std::filesystem::absolute(path_of(path));
+  if (foreign_)
+    throw std::runtime_error(
+        "the state that was restored is of a world with other values, from which no replay can start");
+  const std::filesystem::path file = std::filesystem::weakly_canonical(std::filesystem::absolute(path_of(path)));
+  if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file))
+    throw InputError(file.string(), "is no file that could be replaced");
   const ReplayFiles files = held->world.script().replay_files(file, held->world.frames());
+  if (!files.scene.empty() && std::filesystem::exists(files.scene) && read_text(files.scene) != files.scene_text)
+    throw InputError(files.scene.string(), "exists, and the replay would need this name for a scene of its own");
   if (!files.scene.empty()) write_whole_file(files.scene, files.scene_text);
   write_whole_file(file, files.replay_text);
 }
 
 Image WorldFace::draw(const std::vector<std::string>& settings) {
   const Lock held = whole();
+  static const pid_t first = getpid();  // OpenGL has threads of its own, and a process inherits none
+  if (first != getpid()) {
+    throw RunError(
+        "this process was forked from one that has drawn, and OpenGL does not outlive that: start pools with "
+        "multiprocessing.get_context(\"spawn\")");
+  }
   const py::gil_scoped_release others_run;
   return held->drawn().draw(settings);
 }

@@ -16,9 +16,18 @@
 
 namespace supple::python {
 
+// Issues a SuppleWarning.
+void warn(const std::string& text);
+
 // Reports a step that failed.
 class StepFailed : public std::runtime_error {
   using std::runtime_error::runtime_error;
+};
+
+struct Snapshot {
+  WorldState state;
+  std::uint64_t scene;   // hash of the scene that it is of
+  bool foreign = false;  // whether it comes from a state of another scene
 };
 
 class WorldFace {
@@ -38,12 +47,12 @@ class WorldFace {
 
   void change(const std::string& path, const py::object& value, double over, const std::string& ease,
               const std::string& by, const py::object& start);
-  std::string grab(const std::string& body, const std::vector<int>& vertices, double stiffness, std::string name);
+  std::string grab(const std::string& body, const py::object& vertices, double stiffness, std::string name);
   void move(const std::string& body, const std::string& handle, const py::object& move, const py::object& turn_deg);
   void release(const std::string& body, const std::string& handle) { locked()->world.release(body, handle); }
 
-  WorldState state() { return whole()->world.state(); }
-  void restore(const WorldState& state);
+  Snapshot state() { return {whole()->world.state(), scene_, foreign_}; }
+  void restore(const Snapshot& snapshot);
   std::uint64_t hash() { return locked()->world.hash(); }
   void save_replay(const py::object& path);
   Image draw(const std::vector<std::string>& settings);
@@ -100,6 +109,9 @@ class WorldFace {
   std::vector<Eigen::Index> own_handled_;  // by body: vertices of the scene's own handles
   std::vector<std::size_t> own_handles_;   // by body, without those that were added
   bool warned_ = false;                    // that a step was not solved
+  int grabs_ = 0;                          // that were given names here
+  std::uint64_t scene_ = 0;                // hash of the scene
+  bool foreign_ = false;                   // the world goes on from a state of another scene
   bool failed_ = false;                    // a step; until a state is restored
 };
 

@@ -73,9 +73,9 @@ class World(_supple.World):
     def grab(self, body, vertices, *, stiffness, name=""):
         """Holds vertices where they are from the next frame on, and returns a Grab that moves and releases them.
 
-        body: a name. vertices: numbers, counted from 0. stiffness: of the spring of each vertex [N/m]; a tenth of the
+        body: a name. vertices: numbers, counted from 0, or a mask. stiffness: of the spring of each vertex [N/m]; a tenth of the
         body's weight, over the number of vertices and a hundredth of the body's size, is a useful scale."""
-        return Grab(self, body, self._grab(body, [int(vertex) for vertex in vertices], stiffness, name))
+        return Grab(self, body, self._grab(body, vertices, stiffness, name))
 
     def show(self, *, camera=None, size=None, set={}):
         """Returns a Picture of the world, which a notebook shows. The arguments are those of render()."""

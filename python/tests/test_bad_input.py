@@ -335,3 +335,141 @@ def test_a_grab_without_a_name_finds_a_free_one(cube):
 
 def test_a_long_ramp_is_refused(cube):
     refused(lambda: supple.World(cube).set("gravity", [0, 0, 0], over=1e9), "frames are the most")
+
+
+def in_a_fork(work):
+    """Returns the exit status of a child process that does the work and then ends as a program does."""
+    child = os.fork()
+    if child == 0:
+        try:
+            work()
+        except BaseException:
+            os._exit(1)
+        os._exit(0)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+
+
+def test_drawing_in_a_fork_of_a_process_that_has_drawn_is_told(cube):
+    supple.render(supple.World(cube), size=(32, 32))
+
+    def draw():
+        refused(lambda: supple.render(supple.World(cube), size=(32, 32)), "spawn", kind=supple.RunError)
+
+    assert in_a_fork(draw) == 0
+
+
+def test_a_film_outlives_forks(cube, tmp_path):
+    picture = np.zeros((48, 64, 3), np.uint8)
+    film = supple.Film(tmp_path / "film.mp4")
+    film.add(picture)
+    sleeper = os.fork()
+    if sleeper == 0:
+        time.sleep(60)  # holds on to what it has inherited
+        os._exit(0)
+
+    def use():
+        with pytest.raises(RuntimeError, match="another process"):
+            film.add(picture)
+        with pytest.raises(RuntimeError, match="another process"):
+            film.close()
+
+    assert in_a_fork(use) == 0
+    film.add(picture)
+    film.close()
+    assert (tmp_path / "film.mp4").stat().st_size > 0
+    os.kill(sleeper, signal.SIGKILL)
+    os.waitpid(sleeper, 0)
+
+
+def test_a_film_without_pictures_is_told(tmp_path):
+    with pytest.warns(supple.SuppleWarning, match="no picture"):
+        supple.Film(tmp_path / "film.mp4").close()
+
+
+def test_vertices_are_whole_numbers_or_a_mask(cube):
+    world = supple.World(cube)
+    top = world.bodies["cube"].rest[:, 1] > 0.2 - 1e-9
+    hand = world.grab("cube", top, stiffness=100)
+    world.step()
+    hand.move([0.1, 0, 0])
+    world.step(10)
+    moved = world.bodies["cube"].positions - world.bodies["cube"].rest
+    assert moved[top, 0].mean() > 0.05
+    for wrong in ([1.5], "0", ["1"], top[:5], None, [[1]], iter([1])):
+        refused(lambda: world.grab("cube", wrong, stiffness=1), "whole numbers")
+    refused(lambda: world.grab("cube", [2**40], stiffness=1), "no vertex 1099511627776")
+    vertices, tetrahedra = block()
+    model = supple.Model(vertices, tetrahedra.astype(np.uint64), "rubber", pinned=vertices[:, 0] == 0)
+    assert list(model.pinned) == list(np.flatnonzero(vertices[:, 0] == 0))
+    refused(lambda: supple.Model(vertices * 1j, tetrahedra, "rubber"), "array of numbers")
+
+
+def test_hands_of_other_times_move_nothing(cube):
+    world = supple.World(cube)
+    world.step()
+    before = world.state()
+    old = world.grab("cube", [0], stiffness=10)
+    world.step()
+    world.restore(before)
+    refused(lambda: old.move([0, 1, 0]), "holds nothing")
+    new = world.grab("cube", [5], stiffness=10)
+    assert new.name != old.name
+    refused(lambda: old.move([0, 1, 0]), "holds nothing")
+    world.step()
+    new.release()
+    refused(lambda: new.move([0, 1, 0]), "let go")
+
+
+def test_a_hand_moves_over_the_first_frame_as_over_others(cube):
+    cube["substeps"], cube["gravity"], cube["collider"] = 10, [0, 0, 0], []
+    world = supple.World(cube)
+    everywhere = world.grab("cube", range(64), stiffness=1e5)
+    everywhere.move([0.1, 0, 0])
+    world.step()
+    assert world.bodies["cube"].velocities[:, 0].mean() == pytest.approx(0.1 * 30, rel=0.1)
+
+
+def test_a_state_of_other_values_goes_on_but_is_no_replay(cube, tmp_path):
+    soft, stiff = supple.World(cube), supple.World(cube, set={"body.cube.material.young": 1e6})
+    soft.step(3)
+    own = stiff.state()
+    stiff.restore(soft.state())
+    stiff.step()
+    with pytest.raises(RuntimeError, match="other values"):
+        stiff.save_replay(tmp_path / "saved.toml")
+    stiff.restore(own)
+    stiff.step()
+    stiff.save_replay(tmp_path / "saved.toml")
+
+
+def test_replays_go_where_files_are(cube, tmp_path):
+    world = supple.World(cube)
+    world.step()
+    os.mkfifo(tmp_path / "fifo.toml")
+    refused(lambda: world.save_replay(tmp_path / "fifo.toml"), "no file")
+    refused(lambda: world.save_replay(""), "empty")
+    refused(lambda: world.save_replay("a\0b"), "zero")
+    (tmp_path / "x-scene.toml").write_text("# somebody's own\n")
+    refused(lambda: world.save_replay(tmp_path / "x.toml"), "exists")
+    assert not (tmp_path / "x.toml").exists()
+    (tmp_path / "target.toml").write_text("")
+    (tmp_path / "link.toml").symlink_to(tmp_path / "target.toml")
+    world.save_replay(tmp_path / "link.toml")
+    assert (tmp_path / "link.toml").is_symlink() and (tmp_path / "target.toml").read_text()
+    world.step()
+    world.save_replay(tmp_path / "link.toml")  # again, of the same scene
+
+
+@pytest.mark.parametrize("kind", [supple.World, supple.Body, supple.WorldState, supple.Model, supple.State,
+                                  supple.Colliders, supple.Film])
+def test_objects_that_were_never_made(kind):
+    empty = kind.__new__(kind)
+    for name in dir(kind):
+        if name.startswith("__"):
+            continue
+        try:
+            value = getattr(empty, name)
+            if callable(value):
+                value()
+        except (TypeError, RuntimeError, ValueError):
+            pass

@@ -11,6 +11,8 @@
 
 #include <cerrno>
 #include <ctime>
+#include <mutex>
+#include <set>
 #include <utility>
 
 namespace supple {
@@ -148,6 +150,39 @@ std::optional<ProgramEnd> run_program(const std::vector<std::string>& words, con
   return wait_for_end(child, std::move(output));
 }
 
+// Holds the programs that this process feeds, for processes that are forked from it.
+struct FedPrograms {
+  std::mutex mutex;
+  std::set<FedProgram*> programs;
+
+  static FedPrograms& all() {
+    static FedPrograms& list = *new FedPrograms;  // never destroyed: a process may be forked at any time
+    static const int registered =
+        ::pthread_atfork([] { all().mutex.lock(); }, [] { all().mutex.unlock(); }, [] { all().forget(); });
+    (void)registered;
+    return list;
+  }
+  void forget() {
+    for (FedProgram* program : programs) program->forget();
+    programs.clear();
+    mutex.unlock();
+  }
+  void add(FedProgram* program) {
+    const std::lock_guard lock(mutex);
+    programs.insert(program);
+  }
+  void remove(FedProgram* program) {
+    const std::lock_guard lock(mutex);
+    programs.erase(program);
+  }
+};
+
+void FedProgram::forget() {
+  close_input();
+  if (output_ >= 0) ::close(output_);
+  output_ = child_ = -1;
+}
+
 FedProgram::FedProgram(const std::vector<std::string>& words) {
   int input[2], output[2];
   if (::pipe2(input, O_CLOEXEC) != 0) return;
@@ -163,10 +198,12 @@ FedProgram::FedProgram(const std::vector<std::string>& words) {
   constexpr int pipe_bytes = 1 << 20;  // fewer changes between the two programs; the system may grant less
   (void)::fcntl(input_, F_SETPIPE_SZ, pipe_bytes);
   (void)::fcntl(input_, F_SETFL, O_NONBLOCK);
+  FedPrograms::all().add(this);
   if (child_ < 0) close_input();
 }
 
 FedProgram::~FedProgram() {
+  FedPrograms::all().remove(this);
   if (child_ >= 0) ::kill(child_, SIGKILL);  // before it can take the end of its input for the end of its work
   close_input();
   if (output_ >= 0) ::close(output_);

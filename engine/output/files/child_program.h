@@ -31,7 +31,8 @@ std::string file_word(const std::filesystem::path& file);
 std::optional<ProgramEnd> run_program(const std::vector<std::string>& words, const std::function<bool()>& stop = {});
 
 // Runs a program at the same time as this one and feeds its standard input. Ctrl-C on the terminal does not reach it.
-// Only one thread may use it at a time.
+// Only one thread may use it at a time. A process that is forked from this one meanwhile has no part in it: it lets go
+// of the program's input, which would not end as long as somebody holds it.
 class FedProgram {
  public:
   // Looks the program up in PATH and starts it. The program does not outlive the calling thread: it gets SIGKILL when
@@ -51,8 +52,10 @@ class FedProgram {
   std::optional<ProgramEnd> finish();
 
  private:
+  friend struct FedPrograms;  // in child_program.cpp
   bool wait_for_room();
   void close_input();
+  void forget();
 
   pid_t child_ = -1;
   int input_ = -1, output_ = -1;  // our ends of the pipes; -1: closed

@@ -33,7 +33,7 @@ struct TimedChange {
 // Returns all that these changes require to be recomputed for one body or collider.
 ChangeCost cost_for(const std::string& name, const std::vector<TimedChange>& changes);
 
-// Describes a handle that grabs vertices of a body where they are.
+// Describes a handle that grabs vertices of a body where they are. Its keys are joined evenly.
 struct LiveGrab {
   std::string body, name;
   std::vector<int> vertices;  // numbers, counted from 1

@@ -237,8 +237,8 @@ namespace {
 ConfigValue table_of_grab(const LiveGrab& grab, const std::string& source) {
   const std::string until = std::isfinite(grab.until) ? fmt::format(", until = {}", grab.until) : "";
   const auto table = ConfigValue::parse(
-      fmt::format("{{ name = {}, select = {{ vertices = [{}] }}, stiffness = {}, from = {}{} }}", toml_text(grab.name),
-                  fmt::join(grab.vertices, ", "), grab.stiffness, grab.from, until),
+      fmt::format("{{ name = {}, select = {{ vertices = [{}] }}, stiffness = {}, ease = \"linear\", from = {}{} }}",
+                  toml_text(grab.name), fmt::join(grab.vertices, ", "), grab.stiffness, grab.from, until),
       source);
   if (!table) throw InputError(source, fmt::format("'{}' cannot be the name of a handle", grab.name));
   return *table;

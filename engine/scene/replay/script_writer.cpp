@@ -49,6 +49,7 @@ ConfigValue table_of_grab(const LiveGrab& grab) {
   put("name", toml_text(grab.name));
   put("select", fmt::format("{{ vertices = [{}] }}", fmt::join(grab.vertices, ", ")));
   put("stiffness", fmt::format("{}", grab.stiffness));
+  put("ease", toml_text(name_of(Ease::linear)));
   put("from", fmt::format("{}", grab.from));
   if (std::isfinite(grab.until)) put("until", fmt::format("{}", grab.until));
   return table.root().all_but("");
