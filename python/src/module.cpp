@@ -227,8 +227,10 @@ It may be of another world of the same scene. What was set and grabbed after it 
   };
   py::class_<BodyFace, std::shared_ptr<BodyFace>>(m, "Body",
                                                   "A body of a world. Rows are in the order of its mesh's vertices.")
-      .def_property_readonly("name", [](const std::shared_ptr<BodyFace>& body) { return body->name; })
-      .def_property_readonly("world", [](const std::shared_ptr<BodyFace>& body) { return body->world; })
+      .def_property_readonly(
+          "name", [](const std::shared_ptr<BodyFace>& body) { return body->name; }, "Its name in the scene.")
+      .def_property_readonly(
+          "world", [](const std::shared_ptr<BodyFace>& body) { return body->world; }, "The world that it is a part of.")
       .def_property_readonly("positions", array(&WorldFace::positions),
                              "Positions, n x 3 [m]: a view that always shows the present ones, read-only.")
       .def_property_readonly("velocities", array(&WorldFace::velocities), "Velocities, n x 3 [m/s]: a view like that.")
