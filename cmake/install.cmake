@@ -55,6 +55,6 @@ if(TARGET supple_python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
       "supple (= ${PROJECT_VERSION}), python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy")
-  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "films of soft bodies, for Python\nScenes in time, bodies made of arrays, and pictures.")
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "films of soft bodies, for Python\nScenes in time, bodies made of arrays, and pictures.")
 endif()
 include(CPack)
