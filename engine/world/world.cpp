@@ -45,7 +45,6 @@ struct World::Parts {
   }
   // Returns when the next frame begins [s].
   double next_time() const { return (frame + 1) / scene.fps; }
-  std::size_t body_named(const std::string& name) const;
   void take_edits(LiveEdits edits);
   // Changes the scene before its first frame.
   void begin_with(SceneDef scene, const std::vector<TimedChange>& changes) {
@@ -134,9 +133,9 @@ void World::rewind() {
   parts.begin_frame();
 }
 
-std::size_t World::Parts::body_named(const std::string& name) const {
+std::size_t World::body_named(const std::string& name) const {
   std::vector<std::string> names;
-  for (const Body& body : bodies) names.push_back(body.def.name);
+  for (const Body& body : parts_->bodies) names.push_back(body.def.name);
   const auto found = std::ranges::find(names, name);
   if (found == names.end()) {
     throw InputError(name,
@@ -172,7 +171,7 @@ void World::change(TimedChange change) {
 void World::grab(LiveGrab grab) {
   Parts& parts = *parts_;
   Script& script = parts.script.value();
-  const std::size_t b = parts.body_named(grab.body);
+  const std::size_t b = body_named(grab.body);
   Body& body = parts.bodies[b];
   if (body.def.table != body.def.name) {
     throw InputError(grab.body,
@@ -210,7 +209,7 @@ void World::grab(LiveGrab grab) {
 void World::release(const std::string& name, const std::string& handle) {
   Parts& parts = *parts_;
   Script& script = parts.script.value();
-  const std::size_t b = parts.body_named(name);
+  const std::size_t b = body_named(name);
   const std::string place = fmt::format("handle '{}' of body '{}'", handle, name);
   const double until = parts.next_time();
   const auto& grabs = script.edits().grabs;

@@ -106,6 +106,8 @@ class World {
   double saved_ms() const;
 
   std::size_t size() const;  // number of bodies
+  // Returns the number of a body. Throws InputError, which lists the bodies, where there is none of this name.
+  std::size_t body_named(const std::string& name) const;
   MovingBody& body(std::size_t index);
   const MovingBody& body(std::size_t index) const;
 

@@ -31,16 +31,6 @@ SceneSource source_of(const py::object& source) {
   return scene_file(path_of(source));
 }
 
-std::size_t number_of(const World& world, const std::string& body) {
-  std::vector<std::string> names;
-  for (const Body& one : world.bodies()) names.push_back(one.def.name);
-  const auto found = std::ranges::find(names, body);
-  if (found == names.end())
-    throw InputError(body,
-                     fmt::format("there is no such body: there is {}{}", word_list(names), did_you_mean(body, names)));
-  return static_cast<std::size_t>(found - names.begin());
-}
-
 py::tuple tuple_of(const Vec3& v) { return py::make_tuple(v.x(), v.y(), v.z()); }
 
 }  // namespace
@@ -238,7 +228,7 @@ void WorldFace::change(const std::string& path, const py::object& value, double 
 std::string WorldFace::grab(const std::string& body, const py::object& vertices, double stiffness, std::string name) {
   const Lock held = whole();
   const std::string place = fmt::format("grab of body '{}'", body);
-  const std::size_t number = number_of(held->world, body);
+  const std::size_t number = held->world.body_named(body);
   const std::vector<HandleDef>& handles = held->world.bodies()[number].def.handles;
   while (name.empty()) {  // a name is never given twice, so that a hand of a state that was left moves no other one
     const std::string free = fmt::format("grab_{}", ++grabs_);

@@ -24,6 +24,7 @@ class StepFailed : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Holds a state of a world, and tells of which scene it is.
 struct Snapshot {
   WorldState state;
   std::uint64_t scene;   // hash of the scene that it is of

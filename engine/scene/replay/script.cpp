@@ -1,7 +1,5 @@
 #include "scene/replay/script.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -231,27 +229,12 @@ SceneDef Script::scene_at(int frame) const {
   return parts_->read(document);
 }
 
-namespace {
-
-// Returns the table of a grab, as [[body.handles]] has it.
-ConfigValue table_of_grab(const LiveGrab& grab, const std::string& source) {
-  const std::string until = std::isfinite(grab.until) ? fmt::format(", until = {}", grab.until) : "";
-  const auto table = ConfigValue::parse(
-      fmt::format("{{ name = {}, select = {{ vertices = [{}] }}, stiffness = {}, ease = \"linear\", from = {}{} }}",
-                  toml_text(grab.name), fmt::join(grab.vertices, ", "), grab.stiffness, grab.from, until),
-      source);
-  if (!table) throw InputError(source, fmt::format("'{}' cannot be the name of a handle", grab.name));
-  return *table;
-}
-
-}  // namespace
-
 void Script::Parts::apply_edits() {
   if (!unedited) unedited.emplace(Unedited{scene_file.copy(), changes});
   scene_file = unedited->scene_file.copy();
   for (const LiveGrab& grab : edits.grabs) {
-    const std::string source = fmt::format("grab of body '{}'", grab.body);
-    scene_file.append("body." + grab.body + ".handles", table_of_grab(grab, source), {source});
+    Config table = document_of(grab);
+    scene_file.append("body." + grab.body + ".handles", table.root().all_but("body"), {table.name()});
   }
   changes = unedited->changes;
   changes.insert(changes.end(), edits.changes.begin(), edits.changes.end());
@@ -303,16 +286,11 @@ void Script::add(const LiveGrab& grab) {
 }
 
 void Script::end_grab(const std::string& body, const std::string& name, double until) {
-  LiveEdits& edits = parts_->edits;
+  std::vector<LiveGrab>& grabs = parts_->edits.grabs;
   const auto grab =
-      std::ranges::find_if(edits.grabs, [&](const LiveGrab& one) { return one.body == body && one.name == name; });
-  SUPPLE_CHECK(grab == edits.grabs.end(), ==, false);
+      std::ranges::find_if(grabs, [&](const LiveGrab& one) { return one.body == body && one.name == name; });
+  SUPPLE_CHECK(grab == grabs.end(), ==, false);
   grab->until = until;
-  if (grab->until <= grab->from) {
-    const std::string prefix = "body." + body + ".handles." + name + ".";
-    std::erase_if(edits.changes, [&](const TimedChange& change) { return change.path.starts_with(prefix); });
-    edits.grabs.erase(grab);
-  }
   parts_->apply_edits();
 }
 

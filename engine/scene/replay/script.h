@@ -47,7 +47,7 @@ class Script {
   void add(TimedChange change);
   // Adds a handle to a body, behind those that it has.
   void add(const LiveGrab& grab);
-  // Lets a grab end [s]; one that ends when it begins is taken back.
+  // Lets a grab end, later than it begins [s].
   void end_grab(const std::string& body, const std::string& name, double until);
   const LiveEdits& edits() const;
   // Replaces all edits by those that were in force once. Throws InputError, and changes nothing, where they are of

@@ -64,6 +64,9 @@ struct Script::Parts {
   std::optional<ConfigValue> value_at(const std::string& path, Config document) const;
 };
 
+// Returns a grab as [[grab]] of a replay has it.
+Config document_of(const LiveGrab& grab);
+
 // Adds the tables that a scene may omit, so that readers also ask for their keys.
 void open_tables(Config& document);
 

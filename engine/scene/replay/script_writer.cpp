@@ -10,9 +10,9 @@
 namespace supple {
 namespace {
 
-ConfigValue value_of_text(const std::string& text) { return ConfigValue::parse(text).value(); }
-
-ConfigValue frame_or_seconds(double time) { return value_of_text(fmt::format("{}", time)); }
+ConfigValue value_of_text(const std::string& text, const std::string& source = "") {
+  return ConfigValue::parse(text, source).value();
+}
 
 // Returns the scene as a replay names it, which lies in `folder`.
 std::string scene_name(const std::filesystem::path& file, const std::filesystem::path& folder,
@@ -33,7 +33,7 @@ ConfigValue table_of_change(const TimedChange& change, double fps) {
   put("frame", value_of_text(fmt::format("{}", std::lround(change.at * fps))));
   put("path", value_of_text(toml_text(change.path)));
   if (change.over > 0) {
-    put("over", frame_or_seconds(change.over));
+    put("over", value_of_text(fmt::format("{}", change.over)));
     put("ease", value_of_text(toml_text(name_of(change.ease))));
     put("by", value_of_text(toml_text(name_of(change.by))));
     put("from", change.from.value());
@@ -42,9 +42,14 @@ ConfigValue table_of_change(const TimedChange& change, double fps) {
   return table.root().all_but("");
 }
 
-ConfigValue table_of_grab(const LiveGrab& grab) {
-  Config table = Config::parse("", "", "");
-  const auto put = [&table](const char* key, const std::string& text) { table.put(key, value_of_text(text), {}, {}); };
+}  // namespace
+
+Config document_of(const LiveGrab& grab) {
+  const std::string source = fmt::format("grab of body '{}'", grab.body);
+  Config table = Config::parse("", source, "");
+  const auto put = [&](const char* key, const std::string& text) {
+    table.put(key, value_of_text(text, source), {source}, {});
+  };
   put("body", toml_text(grab.body));
   put("name", toml_text(grab.name));
   put("select", fmt::format("{{ vertices = [{}] }}", fmt::join(grab.vertices, ", ")));
@@ -52,10 +57,8 @@ ConfigValue table_of_grab(const LiveGrab& grab) {
   put("ease", toml_text(name_of(Ease::linear)));
   put("from", fmt::format("{}", grab.from));
   if (std::isfinite(grab.until)) put("until", fmt::format("{}", grab.until));
-  return table.root().all_but("");
+  return table;
 }
-
-}  // namespace
 
 namespace {
 
@@ -92,7 +95,7 @@ ReplayFiles Script::replay_files(const std::filesystem::path& file, int frames) 
       named.put_key("set", setting.substr(0, equals),
                     value ? *value : value_of_text(toml_text(setting.substr(equals + 1))));
     }
-    for (const LiveGrab& grab : parts.edits.grabs) named.append("grab", table_of_grab(grab), {});
+    for (const LiveGrab& grab : parts.edits.grabs) named.append("grab", document_of(grab).root().all_but(""), {});
     named.make_files_absolute();
     const std::string text = named.as_toml() + "\n";
     try {

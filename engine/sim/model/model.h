@@ -20,7 +20,8 @@ namespace supple {
 // Describes some vertices that follow a motion given from outside.
 struct Handle {
   std::string name;
-  // Of the mesh, in its own numbering. Handles with springs may have vertices in common as long as one of them holds.
+  // These vertices are numbered as in the mesh. Handles with springs may share some, as long as only one holds at a
+  // time.
   std::vector<std::int32_t> vertices;
   double stiffness = 0;  // of the spring from each vertex to its target [N/m]; 0: hard, the rows are eliminated
   bool holds = true;     // false: the springs have been let go and do not pull
