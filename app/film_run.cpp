@@ -83,6 +83,8 @@ void print_result(const FilmResult& result, const RunFolder& folder, const Scene
   const std::string rate = made > 0 ? fmt::format("{:.1f} a second; ", made / seconds) : "";
   say(stdout, fmt::format("  {} frames{} in {} ({}the film's rate is {:g}), after {} of set-up\n", made, kept,
                           duration_text(seconds), rate, scene.fps, duration_text(result.setup_ms / 1000)));
+  if (const std::string played = result.tally.session_text(); !played.empty())
+    say(stdout, fmt::format("  session  {}\n", played));
   if (result.video_written) say(stdout, fmt::format("  film     {}\n", result.video.string()));
   for (const std::filesystem::path& still : result.stills)
     say(stdout, fmt::format("  {:<8} {}\n", still.stem().string(), still.string()));

@@ -72,7 +72,7 @@ class MeetingRun {
         pairs_(world_, FrameRows()) {
     world_.start(solvers_.steps, &threads);
     for (std::size_t b = 0; b < world_.size(); ++b)
-      recorders_.push_back(std::make_unique<BodyRecorder>(world_, b, folder_, errors_));
+      recorders_.push_back(std::make_unique<BodyRecorder>(world_, b, &folder_, errors_));
   }
 
   MeetingOutcome play();

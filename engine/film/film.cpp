@@ -8,10 +8,12 @@
 #include "base/error.h"
 #include "base/frame_time.h"
 #include "base/timing.h"
+#include "film/film_guide.h"
 #include "film/frame_loop.h"
 #include "film/pictures/film_stills.h"
 #include "film/pictures/reference_run.h"
 #include "film/plan/film_solvers.h"
+#include "film/plan/shipped_files.h"
 #include "film/progress.h"
 #include "film/record/film_checks.h"
 #include "film/record/film_identity.h"
@@ -89,6 +91,7 @@ FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film) {
   if (plan.pictures != FilmPictures::none) note_other_graphs(scene, start.place.path, start.kept_frames());
   check_records(plan, start);
   if (!plan.verify.empty()) start.verifier.emplace(plan.verify, start.record_head, plan.tolerance, start.kept_frames());
+  start.repeated = repeated_cuts(film.world.script().session(), names_of(film.world.bodies()));
   if (!plan.repeat.empty()) start.repeated = repeated_cuts(plan.repeat, names_of(film.world.bodies()), scene.frames);
   // A folder that does not exist yet is locked only now, so that a film that is refused leaves no trace.
   if (!plan.folder_is_locked && !start.lock) start.lock = std::make_unique<FolderLock>(start.place.path);
@@ -127,6 +130,8 @@ bool make_frames(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const
   Progress progress(film.world.script().scene().frames, start.kept_frames(), plan.quiet);
   std::optional<FilmLog> log;
   std::optional<FrameLoop> frames;
+  std::optional<Pictures> pictures;
+  std::optional<FilmGuide> guide;
   const auto guarded = [&result](const auto& work) {
     try {
       work();
@@ -138,20 +143,25 @@ bool make_frames(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const
   guarded([&] {
     Zone prepare("prepare film");
     log.emplace(folder, start.checkpoint_every, start.identity, start.kept_frames(), plan.record);
-    frames.emplace(plan, film, start, folder, solvers, *log, video);
+    frames.emplace(plan, film, start, &folder, solvers, log->whole_rows());
+    if (const Stage* stage = frames->stage()) {
+      const PictureTargets targets{folder.frames(), !plan.film_only, video, start.kept_frames()};
+      frames->draw_on(pictures.emplace(*stage, plan.gl, shaders_folder(), targets));
+    }
+    guide.emplace(film.world, *log, pictures ? &*pictures : nullptr, progress);
     result.setup_ms = setup.elapsed_ms();
     loop.lap_ms();
     prepare.finish();
-    result.end = frames->run(progress, result.message);
+    result.end = frames->run(*guide, result.message);
   });
-  if (frames) guarded([&] { frames->finish(result); });
+  if (guide) guarded([&] { guide->finish(result); });
   if (log) {
     result.rows = log->whole_rows();
     guarded([&] { result.rows.each([&result](const FrameRow& row) { result.tally.add(row); }); });
   }
   progress.end();
   result.wall_ms = loop.elapsed_ms();
-  return frames.has_value();
+  return guide.has_value();
 }
 
 void begin_video(const FilmPlan& plan, const SceneDef& scene, const RunFolder& folder,

@@ -3,34 +3,29 @@
 #include <algorithm>
 
 #include "base/frame_time.h"
-#include "base/hash.h"
-#include "base/interrupts.h"
 #include "base/timing.h"
 #include "base/trace.h"
+#include "base/user_cache.h"
 #include "film/plan/shipped_files.h"
 
 namespace supple {
 
-FilmEnd FrameLoop::run(Progress& progress, std::string& message) {
-  for (int frame = first_; frame < world_.scene().frames; ++frame) {
-    if (interrupted()) return FilmEnd::interrupted;
+FilmEnd FrameLoop::run(FrameGuide& guide, std::string& message) {
+  for (;;) {
+    if (const std::optional<FilmEnd> end = guide.ends()) return *end;
+    const int frame = world_.frames();
     const Zone zone("frame", {}, frame);
     FrameRow row;
     row.frame = frame;
     row.time_s = frame_time(frame, world_.scene().fps);
-    if (log_.keeps_checkpoints()) keep_checkpoint_before();
     enter(frame, row);
     message = step(frame, row);
     if (!message.empty()) return FilmEnd::failed;
     record(frame, row);
-    if (!show(frame, row)) return FilmEnd::failed;  // finish() takes the message from the pictures
+    if (!show(frame, row)) return FilmEnd::failed;
     if (graphs_) graphed_.push_back(graph_point(row));
-    log_.add(std::move(row));
-    if (log_.wants_checkpoint(frame + 1)) add_checkpoint();
-    log_.settle(written_pictures());
-    progress.show(frame + 1);
+    guide.take(std::move(row));
   }
-  return FilmEnd::done;
 }
 
 // Enters the frame, with the changes that a replay makes in it.
@@ -76,7 +71,10 @@ void FrameLoop::record(int frame, FrameRow& row) {
   for (std::size_t b = 0; states_ && b < world_.size(); ++b)
     states_->add(world_.body(b).model(), world_.body(b).state());
   row.state_hash = world_.hash();
-  pairs_.record(row);
+  const std::vector<std::uint64_t>& played = world_.script().session().hashes;
+  if (compares_session_ && std::size_t(frame) < played.size())
+    row.as_in_session = row.state_hash == played[std::size_t(frame)];
+  pairs_->record(row);
   save_outputs(frame, row);
 }
 
@@ -85,13 +83,14 @@ void FrameLoop::save_outputs(int frame, const FrameRow& row) {
   if (plan_.fields_every > 0 && frame % plan_.fields_every == 0) {
     for (const auto& body : recorders_) body->save_fields(frame);
   }
+  if (!poses_) return;
   for (const SceneCollider& collider : world_.colliders().scene_colliders)
     poses_->add(frame, collider.def.name, collider.pose(row.time_s));
 }
 
 // Hands the frame to the pictures. Returns false when they have failed.
 bool FrameLoop::show(int frame, FrameRow& row) {
-  if (!pictures_) return true;
+  if (pictures_ == nullptr) return true;
   const bool every = plan_.pictures == FilmPictures::all;
   const bool drawn = every ? frame % plan_.pictures_every() == 0 : frame + 1 == world_.scene().frames;
   if (!drawn) {
@@ -100,21 +99,39 @@ bool FrameLoop::show(int frame, FrameRow& row) {
   }
   Zone zone("draw list");
   const Stopwatch watch;
-  FramePose pose{frame, row.time_s, {}, {}};
-  for (const auto& body : recorders_) pose.motion.push_back(&body->saved_motion());
-  for (const Positions& body : last_motion_) pose.before.push_back(&body);
-  for (const auto& body : recorders_) pose.forces.push_back(&body->saved_forces());
-  pose.row = &row;
-  pose.earlier = graphed_;
-  DrawList list = drawn_->list(world_.scene(), pose, world_.colliders(), threads_);
+  DrawList list = list_of(frame, row.time_s, &row);
   keep_motion();
   for (std::size_t b = 0; b < recorders_.size(); ++b) {
-    row.bodies[b].skin_excess = drawn_->skin_excess_of(b, list, world_.bodies()[b].description.mesh, *pose.motion[b]);
+    const Positions& motion = recorders_[b]->saved_motion();
+    row.bodies[b].skin_excess = drawn_->skin_excess_of(b, list, world_.bodies()[b].description.mesh, motion);
     row.bodies[b].in_picture = drawn_->share_in_picture(b, list);
   }
   row.draw_ms = watch.elapsed_ms();
   zone.next("wait for render");
   return pictures_->put(every ? frame / plan_.pictures_every() : frame, std::move(list));
+}
+
+// Makes the draw list of the motion that the recorders have saved. row: null where the frame's row is not known.
+DrawList FrameLoop::list_of(int frame, double time, const FrameRow* row) {
+  FramePose pose{frame, time, {}, {}};
+  for (const auto& body : recorders_) pose.motion.push_back(&body->saved_motion());
+  for (const Positions& body : last_motion_) pose.before.push_back(&body);
+  for (const auto& body : recorders_) pose.forces.push_back(&body->saved_forces());
+  pose.row = row;
+  pose.earlier = graphed_;
+  if (!dress_) return drawn_->list(world_.scene(), pose, world_.colliders(), threads_);
+  SceneDef scene = world_.scene();
+  scene.look.wireframe = dress_->look.wireframe;
+  scene.look.marks = dress_->look.marks;
+  scene.field = dress_->field;
+  return drawn_->list(scene, pose, world_.colliders(), threads_);
+}
+
+bool FrameLoop::show_again() {
+  if (pictures_ == nullptr) return true;
+  for (const auto& body : recorders_) body->note_motion();
+  const int frame = std::max(world_.frames() - 1, 0);
+  return pictures_->put(frame, list_of(frame, world_.frames() / world_.scene().fps, nullptr));
 }
 
 // Keeps the frame's positions for the next one, where the pictures need them.
@@ -124,76 +141,70 @@ void FrameLoop::keep_motion() {
   for (const auto& body : recorders_) last_motion_.push_back(body->saved_motion());
 }
 
-FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
-                     const FilmSolvers& solvers, FilmLog& log, VideoEncoder* video)
+FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder* folder,
+                     const FilmSolvers& solvers, const FrameRows& earlier)
     : plan_(plan),
       world_(film.world),
-      folder_(folder),
       threads_(film.info.threads),
-      first_(start.kept_frames()),
-      log_(log),
       graphs_(plan.pictures != FilmPictures::none &&
               (world_.scene().text.error_graph || world_.scene().text.time_graph)),
       verifier_(start.verifier ? &*start.verifier : nullptr),
-      errors_(film.world, solvers, threads_),
-      pairs_(film.world, log.whole_rows()) {
+      compares_session_(folder != nullptr),
+      errors_(film.world, solvers, threads_) {
   if (plan.pictures != FilmPictures::none) {
     drawn_.emplace(world_.script(), world_.bodies(), std::move(film.drawn), world_.colliders(), caption_font());
     if (film.info.framed) drawn_->frame_motion(*film.info.framed);
-    pictures_.emplace(drawn_->stage(), plan.gl, shaders_folder(),
-                      PictureTargets{folder.frames(), !plan.film_only, video, first_});
   }
-  if (graphs_) log_.whole_rows().each([&](const FrameRow& row) { graphed_.push_back(graph_point(row)); });
   world_.start(solvers.steps, &threads_);
+  const int first = start.kept_frames();
   for (std::size_t b = 0; b < world_.size(); ++b) {
-    recorders_.push_back(std::make_unique<BodyRecorder>(world_, b, folder, errors_, first_));
+    recorders_.push_back(std::make_unique<BodyRecorder>(world_, b, folder, errors_, first));
     if (!start.repeated.empty()) recorders_.back()->repeat(start.repeated[b]);
   }
   const std::size_t colliders = world_.colliders().scene_colliders.size();
-  if (colliders > 0) poses_.emplace(folder.colliders(), first_ * int(colliders));
-  if (start.checkpoint) resume(*start.checkpoint);
-  if (drawn_ && drawn_->needs_before()) {
-    for (const auto& body : recorders_) last_motion_.push_back(body->present_motion());
+  if (colliders > 0 && folder != nullptr) poses_.emplace(folder->colliders(), first * int(colliders));
+  if (start.checkpoint) {
+    go_to(*start.checkpoint, earlier);
+  } else {
+    go_on_after(earlier);
   }
-  if (!plan.record.empty()) states_.emplace(plan.record, start.record_head, first_);
+  if (!plan.record.empty()) states_.emplace(plan.record, start.record_head, first);
 }
 
-// Restores the state at which an earlier run took its checkpoint.
-void FrameLoop::resume(const WorldState& checkpoint) {
-  world_.restore(checkpoint);
-  if (drawn_) drawn_->follow(world_.script().changes(), world_.colliders(), world_.bodies());
-  for (std::size_t b = 0; b < recorders_.size(); ++b) recorders_[b]->resume(log_.last_kept().bodies.at(b));
+void FrameLoop::go_to(const WorldState& state, const FrameRows& before) {
+  std::vector<TimedChange> changes = world_.script().changes();  // those that hold no more count, too
+  world_.restore(state);
+  changes.insert(changes.end(), world_.script().changes().begin(), world_.script().changes().end());
+  if (drawn_ && !changes.empty()) drawn_->follow(changes, world_.colliders(), world_.bodies());
+  go_on_after(before);
 }
 
-void FrameLoop::keep_checkpoint_before() {
-  const Zone zone("checkpoint");
-  checkpoint_before_ = world_.state();
+// Lets the recorders go on behind these frames.
+void FrameLoop::go_on_after(const FrameRows& before) {
+  pairs_.emplace(world_, before);
+  graphed_.clear();
+  std::vector<BodyRow> last;
+  before.each([&](const FrameRow& row) {
+    if (graphs_) graphed_.push_back(graph_point(row));
+    last = row.bodies;
+  });
+  for (std::size_t b = 0; b < last.size(); ++b) recorders_[b]->resume(last[b]);
+  if (!drawn_ || !drawn_->needs_before()) return;
+  last_motion_.clear();
+  for (const auto& body : recorders_) last_motion_.push_back(body->present_motion());
 }
 
-void FrameLoop::add_checkpoint() {
-  const Zone zone("checkpoint");
-  log_.add(world_.state());
-}
-
-void FrameLoop::finish(FilmResult& result) {
-  const Zone zone("finish film");
-  if (pictures_) {
-    pictures_->finish();
-    result.gl_backend = pictures_->backend;
-    result.gl_renderer = pictures_->renderer;
-    result.gl_version = pictures_->version;
-  }
-  if (pictures_ && !pictures_->error().empty()) {
-    result.end = FilmEnd::failed;
-    result.message = pictures_->error();
-  }
-  const int frames = log_.frames();
-  // After a failure the bodies may be in the middle of a frame, so the checkpoint before that frame is kept.
-  if (result.end == FilmEnd::failed && checkpoint_before_.frames > first_)
-    log_.add(checkpoint_before_);  // a checkpoint at first_ is there already
-  const bool at_end = result.end != FilmEnd::failed && log_.keeps_checkpoints() && !log_.wants_checkpoint(frames);
-  if (at_end) add_checkpoint();
-  log_.settle(written_pictures());
+void FrameLoop::dress(const std::vector<std::string>& settings) {
+  const Script script = world_.script().with(settings);
+  const bool as_elements = script.scene().look.wireframe;
+  std::vector<DrawnBody>& drawn = as_elements ? elements_ : skins_;
+  if (drawn.empty())
+    drawn = drawn_bodies(world_.bodies(), {UserCache::of_user(), {}}, as_elements ? DrawnAs::elements : DrawnAs::skin);
+  drawn_.emplace(script, world_.bodies(), drawn, world_.colliders(), caption_font());
+  dress_ = script.scene();
+  last_motion_.clear();
+  if (!drawn_->needs_before()) return;
+  for (const auto& body : recorders_) last_motion_.push_back(body->present_motion());
 }
 
 }  // namespace supple

@@ -1,5 +1,7 @@
-// Defines the loop that makes a film. Each frame of the world is entered, stepped, recorded, listed to be drawn, and
-// logged; the threads of Pictures draw and compress meanwhile. Nothing that these threads do can change a result.
+// Defines the loop that makes the frames of a world, one after the other. Each frame is entered, stepped, recorded,
+// and listed to be drawn; the threads of the pictures draw and compress meanwhile. Nothing that these threads do can
+// change a result. Which frames there are, and what becomes of their rows and pictures, is not the loop's business: a
+// film (film.cpp) keeps them in its folder, and a live session (live/session.h) shows them on a page.
 #pragma once
 
 #include <memory>
@@ -10,27 +12,45 @@
 #include "film/film.h"
 #include "film/pictures/drawn_film.h"
 #include "film/pictures/pictures.h"
-#include "film/progress.h"
 #include "film/record/body_recorder.h"
-#include "film/record/film_log.h"
 #include "film/record/pair_recorder.h"
 #include "output/motion/pose_table.h"
 
 namespace supple {
 
-// Represents a film in progress.
+// Tells a loop which frames to make, and takes their rows.
+class FrameGuide {
+ public:
+  virtual ~FrameGuide() = default;
+  // Asked before each frame, between which the world may be changed, and go back (FrameLoop::go_to). Returns how the
+  // loop ends; nothing where the world's next frame is wanted.
+  virtual std::optional<FilmEnd> ends() = 0;
+  // Takes the row of a frame that was made, and whose draw list was put where it is drawn.
+  virtual void take(FrameRow row) = 0;
+};
+
 class FrameLoop {
  public:
-  // All that is passed must outlive this object. video: null when no video is made.
-  FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
-            const FilmSolvers& solvers, FilmLog& log, VideoEncoder* video);
+  // Starts the world. All that is passed must outlive this object, but for `earlier`. folder: null where frames leave
+  // no files. earlier: the rows of the frames that an earlier run made (FilmStart::kept_frames).
+  FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder* folder,
+            const FilmSolvers& solvers, const FrameRows& earlier);
 
-  // Makes the frames that remain. Returns how the film ended; when a step failed, `message` says why. When pictures
-  // failed, finish() reports why.
-  FilmEnd run(Progress& progress, std::string& message);
+  // Returns the stage of the pictures; null where the plan wants none. Drawing begins with the target that is given.
+  const Stage* stage() const { return drawn_ ? &drawn_->stage() : nullptr; }
+  void draw_on(DrawListTarget& target) { pictures_ = &target; }
 
-  // Waits for the pictures and writes a checkpoint after the last frame.
-  void finish(FilmResult& result);
+  // Makes the frames that the guide wants. Returns how the loop ended; when a step failed, `message` says why. When the
+  // target refused a list, the target knows why.
+  FilmEnd run(FrameGuide& guide, std::string& message);
+
+  // Goes to a state of this world, earlier or later. before: the rows of all frames before it.
+  void go_to(const WorldState& state, const FrameRows& before);
+  // Draws with these settings over the scene's from now on: path=value, of the field and the look. The stage is another
+  // one then, on which the target must go on. Throws InputError, and then changes nothing.
+  void dress(const std::vector<std::string>& settings);
+  // Puts the list of the world as it is, between two frames.
+  bool show_again();
 
  private:
   // These functions are the parts of a frame, in their order.
@@ -42,32 +62,26 @@ class FrameLoop {
   std::string compare_with_record(int frame);
   void save_outputs(int frame, const FrameRow& row);
   void keep_motion();
-  void resume(const WorldState& checkpoint);
-  void keep_checkpoint_before();
-  void add_checkpoint();
-  // Returns the frames whose pictures have been written since the last call.
-  std::vector<PictureTimes> written_pictures() {
-    return pictures_ ? pictures_->take_written() : std::vector<PictureTimes>();
-  }
+  void go_on_after(const FrameRows& before);
+  DrawList list_of(int frame, double time, const FrameRow* row);
 
   const FilmPlan& plan_;
   World& world_;
-  const RunFolder& folder_;
   Threads threads_;
-  int first_;  // the first frame that this run makes; those before it are an earlier run's
-  FilmLog& log_;
-  bool graphs_;                         // whether the pictures have graphs
-  std::vector<GraphPoint> graphed_;     // points of the frames so far, where the pictures have graphs
-  StateVerifier* verifier_;             // compares states for --verify; null without it
-  WorldState checkpoint_before_;        // taken before the frame in progress; empty when the film keeps none
-  std::optional<DrawnFilm> drawn_;      // only with pictures
+  bool graphs_;                              // whether the pictures have graphs
+  std::vector<GraphPoint> graphed_;          // points of the frames so far, where the pictures have graphs
+  StateVerifier* verifier_;                  // compares states for --verify; null without it
+  bool compares_session_;                    // whether rows tell if a frame is as a live session has played it
+  std::optional<DrawnFilm> drawn_;           // only with pictures
+  std::optional<SceneDef> dress_;            // has the look and the field that dress() has put over the scene's
+  std::vector<DrawnBody> skins_, elements_;  // by body, for dress(); made when they are first wanted
   std::vector<Positions> last_motion_;  // of the bodies at the end of the last frame, where the pictures need it [m]
   WorldErrors errors_;                  // measures steps where the plan asks for it
   std::vector<std::unique_ptr<BodyRecorder>> recorders_;  // of each body
-  PairRecorder pairs_;                                    // notes the pairs of bodies that touch
-  std::optional<PoseTableWriter> poses_;                  // only with colliders
+  std::optional<PairRecorder> pairs_;                     // notes the pairs of bodies that touch
+  std::optional<PoseTableWriter> poses_;                  // only with colliders, and where there are files
   std::optional<StateRecorder> states_;                   // for --record
-  std::optional<Pictures> pictures_;                      // last, so that its threads end first
+  DrawListTarget* pictures_ = nullptr;                    // null until there is one
 };
 
 }  // namespace supple

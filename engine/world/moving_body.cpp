@@ -114,6 +114,11 @@ void MovingBody::repeat(const std::optional<BudgetCuts>& cuts) {
   inputs_.solver.budget_ms = 0;
 }
 
+void MovingBody::keep_to_clock() {
+  inputs_.repeated_cuts.reset();
+  inputs_.solver = solvers_.settings(body_.def.solver.method, body_.def.solver.settings);
+}
+
 // Returns the model of the same body with materials whose k (equation 11) is the same and that have no minimum but
 // rest.
 const Model& MovingBody::rigid_model() {

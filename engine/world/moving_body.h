@@ -40,6 +40,8 @@ class MovingBody {
   // Makes the prepared step end where an earlier run's budget of time ended it, whatever budget this run has. cuts:
   // nothing where the earlier run had no budget for this step.
   void repeat(const std::optional<BudgetCuts>& cuts);
+  // Makes steps end by this run's own budget again.
+  void keep_to_clock();
   // Tells whether the last step was made with the as-rigid-as-possible material.
   bool untangled() const { return untangled_; }
   // Tells whether the last step was made together with other bodies (islands.h).

@@ -26,13 +26,21 @@ struct PictureTargets {
   int kept_frames = 0;           // frames of an earlier run, with whose files the film begins
 };
 
-class Pictures {
+// Takes the draw lists of frames, in their order.
+class DrawListTarget {
+ public:
+  virtual ~DrawListTarget() = default;
+  // Returns false when no more lists can be drawn.
+  virtual bool put(int frame, DrawList list) = 0;
+};
+
+class Pictures : public DrawListTarget {
  public:
   Pictures(const Stage& stage, GlChoice gl, const std::filesystem::path& shaders, const PictureTargets& targets);
-  ~Pictures() { finish(); }
+  ~Pictures() override { finish(); }
 
   // Queues a frame for drawing. Returns false when a stage has failed.
-  bool put(int frame, DrawList list) { return lists_.push({frame, std::move(list)}); }
+  bool put(int frame, DrawList list) override { return lists_.push({frame, std::move(list)}); }
 
   // Waits until every frame that was put has reached its destination.
   void finish();

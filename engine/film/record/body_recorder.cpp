@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/frame_time.h"
 #include "base/trace.h"
@@ -56,18 +57,19 @@ std::string failure_text(int frame, const std::string& body, const StepFailure& 
                      failure.during, failure.what, failure.vertex + 1);
 }
 
-BodyRecorder::BodyRecorder(World& world, std::size_t body, const RunFolder& folder, WorldErrors& errors,
+BodyRecorder::BodyRecorder(World& world, std::size_t body, const RunFolder* folder, WorldErrors& errors,
                            int kept_frames)
     : world_(world),
       body_(body),
       folder_(folder),
       errors_(errors),
-      motion_(folder.motion(world.bodies()[body].def.name), world.body(body).model().vertices, kept_frames),
       origin_(motion_origin(world.bodies()[body].description.mesh.rest)) {
-  const Body& recorded = world.bodies()[body];
-  if (world.scene().may_touch()) forces_.emplace(folder.forces(recorded.def.name), model().vertices, kept_frames);
   start_energy_balance({});
-  write_obj(folder.surface(recorded.def.name), recorded.description.mesh.rest, surface_of(recorded), origin_);
+  if (folder == nullptr) return;
+  const Body& recorded = world.bodies()[body];
+  motion_.emplace(folder->motion(recorded.def.name), model().vertices, kept_frames);
+  if (world.scene().may_touch()) forces_.emplace(folder->forces(recorded.def.name), model().vertices, kept_frames);
+  write_obj(folder->surface(recorded.def.name), recorded.description.mesh.rest, surface_of(recorded), origin_);
 }
 
 void BodyRecorder::start_energy_balance(const EnergyBalance& balance) {
@@ -91,7 +93,11 @@ void BodyRecorder::begin_frame(int frame, bool measure_error, BodyRow& row) {
 
 void BodyRecorder::before_step(int substep) {
   const Zone zone("energy budget", body().def.name);
-  if (repeated_ != nullptr) moving().repeat(cuts_at(*repeated_, frame_, substep));
+  if (repeated_ != nullptr && frame_ < std::ssize(*repeated_)) {
+    moving().repeat(cuts_at(*repeated_, frame_, substep));
+  } else if (std::exchange(repeated_, nullptr) != nullptr) {
+    moving().keep_to_clock();
+  }
   if (is_measured(substep)) errors_.before_step(body_);
   OpenWorkspace& w = moving().workspace();
   w.prepare(model(), moving().inputs().solver);
@@ -164,28 +170,41 @@ void BodyRecorder::end_frame() {
 
 void BodyRecorder::save_motion() {
   const Zone zone("motion files", body().def.name);
-  const Positions written = as_cached(in_input_order(model(), state().x).rowwise() - origin_.transpose());
-  motion_.add(written);
+  const Positions written = cached_motion();
+  if (motion_) motion_->add(written);
   saved_motion_ = written.rowwise() + origin_.transpose();
-  if (!forces_) return;
-  saved_forces_ = as_kept_forces(contact_forces(model(), moving().workspace(), state().x));
-  forces_->add(saved_forces_);
+  note_forces();
+  if (forces_) forces_->add(saved_forces_);
 }
 
-Positions BodyRecorder::present_motion() const {
-  const Positions points = in_input_order(model(), state().x).rowwise() - origin_.transpose();
-  return as_cached(points).rowwise() + origin_.transpose();
+void BodyRecorder::note_motion() {
+  saved_motion_ = present_motion();
+  note_forces();
 }
+
+// Returns the present positions with the digits of the files, relative to their origin [m].
+Positions BodyRecorder::cached_motion() const {
+  return as_cached(in_input_order(model(), state().x).rowwise() - origin_.transpose());
+}
+
+// Notes the present forces, which the last step has left. There are none where no step led to the present state.
+void BodyRecorder::note_forces() {
+  if (!world_.scene().may_touch()) return;
+  saved_forces_ = world_.has_stepped() ? as_kept_forces(contact_forces(model(), moving().workspace(), state().x))
+                                       : Positions(Positions::Zero(model().vertices, 3));
+}
+
+Positions BodyRecorder::present_motion() const { return cached_motion().rowwise() + origin_.transpose(); }
 
 void BodyRecorder::save_problem(int frame) {
   const Zone zone("save state", body().def.name);
   const SceneDef& scene = world_.scene();
-  write_state(folder_.state(body().def.name, frame), {scene.name, scene.title, frame, frame * scene.substeps},
+  write_state(folder_->state(body().def.name, frame), {scene.name, scene.title, frame, frame * scene.substeps},
               problem_of(body().description, model(), moving().inputs(), state()));
 }
 
 void BodyRecorder::save_fields(int frame) {
-  if (!fields_) fields_.emplace(body(), model(), folder_, world_.scene());
+  if (!fields_) fields_.emplace(body(), model(), *folder_, world_.scene());
   fields_->add(frame, state(), moving().workspace());
 }
 

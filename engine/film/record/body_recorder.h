@@ -22,14 +22,15 @@ std::string failure_text(int frame, const std::string& body, const StepFailure& 
 
 class BodyRecorder {
  public:
-  // The world must have been started; it and all that is passed by reference must outlive this object. kept_frames: the
-  // number of frames of an earlier run's motion, which stay and are continued.
-  BodyRecorder(World& world, std::size_t body, const RunFolder& folder, WorldErrors& errors, int kept_frames = 0);
+  // The world must have been started; it and all that is passed by reference must outlive this object. folder: null
+  // where nothing is written. kept_frames: the number of frames of an earlier run's motion, which stay and are
+  // continued.
+  BodyRecorder(World& world, std::size_t body, const RunFolder* folder, WorldErrors& errors, int kept_frames = 0);
 
   // Goes on after a frame of an earlier run, once the world has been restored. row: the body's row of that frame.
   void resume(const BodyRow& row);
-  // Lets the steps end where an earlier run's budgets ended them. cuts: the cuts of that run; they must outlive this
-  // object.
+  // Lets the steps end where an earlier run's budgets ended them, as far as its frames go. cuts: the cuts of that run;
+  // they must outlive this object.
   void repeat(const CutsByFrame& cuts) { repeated_ = &cuts; }
 
   // Begins the row of a frame, before its first step. measure_error: whether the errors of the frame's last step are
@@ -43,8 +44,10 @@ class BodyRecorder {
   // Says why the last step failed; empty where it did not.
   std::string failure() const;
 
-  // Appends the frame to motion/: the positions, and the forces of colliders where there are any.
+  // Notes the frame's positions, and the forces of colliders where there are any, and appends them to motion/.
   void save_motion();
+  // Notes the present positions and forces, as save_motion() does, and appends nothing.
+  void note_motion();
   // Returns the frame's positions as motion/ holds them, in the order of the input file [m].
   const Positions& saved_motion() const { return saved_motion_; }
   // Returns the forces of colliders on the vertices as motion/ holds them, in the order of the input file [N]; without
@@ -53,7 +56,7 @@ class BodyRecorder {
   // Returns the present positions as motion/ would hold them.
   Positions present_motion() const;
   // Writes the problem of a frame's first step, for which the world is prepared, into the folder of states. It changes
-  // no result.
+  // no result. This function and save_fields() need a folder.
   void save_problem(int frame);
   // Writes the frame's fields into fields/.
   void save_fields(int frame);
@@ -65,26 +68,28 @@ class BodyRecorder {
   const State& state() const { return moving().state(); }
   const Body& body() const { return moving().body(); }
   bool is_measured(int substep) const { return measures_error_ && substep + 1 == world_.scene().substeps; }
+  Positions cached_motion() const;
+  void note_forces();
   void start_energy_balance(const EnergyBalance& balance);
   void measure_errors();
   void measure_contact();
 
   World& world_;
   std::size_t body_;
-  const RunFolder& folder_;
+  const RunFolder* folder_;  // null where nothing is written
   WorldErrors& errors_;
   const CutsByFrame* repeated_ = nullptr;  // null: the clock ends the steps that have a budget
   int frame_ = 0;                          // in progress
   bool measures_error_ = false;
   BodyRow* row_ = nullptr;  // the body's row of the frame in progress
   EnergyBudget energy_budget_;
-  Positions start_of_step_;  // q [m]
-  PointCacheWriter motion_;
-  std::optional<ForceFileWriter> forces_;  // where there are colliders
-  Vec3 origin_;                            // of the files of motion [m]
-  Positions saved_motion_;                 // in the world
-  Positions saved_forces_;                 // [N]
-  std::optional<FieldWriter> fields_;      // made when fields are first asked for
+  Positions start_of_step_;                 // q [m]
+  std::optional<PointCacheWriter> motion_;  // these two where files are written
+  std::optional<ForceFileWriter> forces_;   // where there is anything to touch
+  Vec3 origin_;                             // of the files of motion [m]
+  Positions saved_motion_;                  // in the world
+  Positions saved_forces_;                  // [N]
+  std::optional<FieldWriter> fields_;       // made when fields are first asked for
 };
 
 }  // namespace supple

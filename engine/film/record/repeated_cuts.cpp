@@ -41,4 +41,23 @@ std::vector<CutsByFrame> repeated_cuts(const std::filesystem::path& run, const s
   return result;
 }
 
+std::vector<CutsByFrame> repeated_cuts(const PlayedSession& session, const std::vector<std::string>& bodies) {
+  if (session.cuts.empty()) return {};
+  std::vector<CutsByFrame> result(bodies.size(), CutsByFrame(session.hashes.size()));
+  for (const PlayedCut& cut : session.cuts) {
+    const auto body = std::ranges::find(bodies, cut.body);
+    constexpr int most_substeps = 1000;  // that a scene may have
+    if (body == bodies.end() || cut.frame < 0 || cut.frame >= std::ssize(session.hashes) || cut.substep < 0 ||
+        cut.substep >= most_substeps) {
+      throw InputError("[session] of the replay",
+                       fmt::format("cuts: body '{}', frame {}, substep {}: the session has no such step", cut.body,
+                                   cut.frame, cut.substep));
+    }
+    std::vector<BudgetCuts>& of_frame = result[std::size_t(body - bodies.begin())][std::size_t(cut.frame)];
+    if (std::ssize(of_frame) <= cut.substep) of_frame.resize(std::size_t(cut.substep) + 1);
+    of_frame[std::size_t(cut.substep)] = cut.cuts;
+  }
+  return result;
+}
+
 }  // namespace supple

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/replay/played_session.h"
 #include "sim/model/inputs.h"
 
 namespace supple {
@@ -17,5 +18,9 @@ using CutsByFrame = std::vector<std::vector<BudgetCuts>>;
 // InputError where the run has fewer frames, lacks a body, or had no budget.
 std::vector<CutsByFrame> repeated_cuts(const std::filesystem::path& run, const std::vector<std::string>& bodies,
                                        int frames);
+
+// Returns the cuts of a live session by body; no body where it has none. Throws InputError where it
+// names what a film cannot have.
+std::vector<CutsByFrame> repeated_cuts(const PlayedSession& session, const std::vector<std::string>& bodies);
 
 }  // namespace supple

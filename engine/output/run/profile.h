@@ -100,6 +100,7 @@ struct FrameRow {
   std::optional<double> draw_ms, render_ms;  // absent where nothing is drawn
   std::optional<double> compress_ms;         // of the frame's file; absent without one
   std::uint64_t state_hash = 0;
+  std::optional<bool> as_in_session;  // whether the states are those of the live session that wrote the replay
   std::vector<std::array<std::string, 2>> met;  // bodies that pass through each other, first in this frame
   std::vector<DeepRow> deep;                    // bodies that are deep in each other, first in this frame
   std::vector<PairRow> pairs;                   // bodies that touch each other

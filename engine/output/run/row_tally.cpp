@@ -130,6 +130,10 @@ void RowTally::add(const FrameRow& row) {
     stages_[s].rest.push_back(*value);
     stages_[s].sum += *value;
   }
+  if (row.as_in_session) {
+    ++compared_;
+    if (!*row.as_in_session && first_other_ < 0) first_other_ = row.frame;
+  }
   for (const std::array<std::string, 2>& bodies : row.met) met_.push_back({bodies, row.frame});
   for (const DeepRow& pair : row.deep) deep_.push_back({pair, row.frame});
   add_pairs(row, pairs_);
@@ -144,6 +148,13 @@ std::vector<StageSummary> RowTally::stages() const {
       result.push_back({stage_list[s].name, stage.first.value_or(0), distribution_of(stage.rest)});
   }
   return result;
+}
+
+std::string RowTally::session_text() const {
+  if (compared_ == 0 || first_other_ >= 0) return "";
+  return fmt::format("all {} as the live session played them", compared_ == frames_
+                                                                   ? count_text(frames_, "frame")
+                                                                   : fmt::format("of the first {} frames", compared_));
 }
 
 FrameWork RowTally::work(double encoding) const {
@@ -290,6 +301,11 @@ std::vector<std::string> RowTally::warnings() const {
       list.push_back(fmt::format("body '{}' has {} without volume in its last frame", body.name,
                                  count_text(body.collapsed, "element")));
   }
+  if (first_other_ >= 0)
+    list.push_back(fmt::format(
+        "from frame {} on the film is not as the live session played it that wrote the replay: the same bits want the "
+        "same settings and files, the same program, and the same kind of processor",
+        first_other_));
   for (const MetTally& pair : met_)
     list.push_back(fmt::format("bodies '{}' and '{}' pass through each other from frame {} on: these two do not meet",
                                pair.bodies[0], pair.bodies[1], pair.frame));

@@ -96,6 +96,8 @@ class RowTally {
   // Leaves out the bodies of which that is meant.
   std::string unsolved_text(const std::vector<std::string>& meant = {}) const;
   std::string table() const;
+  // Says that the film is as a live session played it; empty where none has, or where it is not.
+  std::string session_text() const;
   FrameWork work(double encoding) const;
 
  private:
@@ -105,6 +107,7 @@ class RowTally {
   std::string pair_table() const;
 
   int frames_ = 0, last_frame_ = -1;
+  int compared_ = 0, first_other_ = -1;  // frames that a live session has played, and the first that is not as there
   bool measured_ = false, touching_ = false;
   std::uint64_t last_hash_ = 0;
   StageTally stages_[5];  // in the order of stage_names

@@ -17,6 +17,7 @@
 
 #include "base/error.h"
 #include "base/names.h"
+#include "base/text.h"
 #include "base/types.h"
 
 namespace toml {
@@ -73,7 +74,9 @@ struct KnownKey {
   std::string path;     // as --set takes it: body.soft.material.mu
   std::string generic;  // as in DocumentedKey
   std::string type, allowed, unit, meaning;
-  std::string value;  // the value in the file, or the default
+  std::string value;               // the value in the file, or the default
+  Range range = {};                // of numbers
+  std::vector<std::string> words;  // of which it is one, where it is a word
 };
 
 // Selects how a value goes from one number to another.
@@ -284,7 +287,17 @@ class ConfigTable {
  private:
   friend class Config;
   ConfigTable(Config* config, const toml::table* table, std::string path, std::string generic);
-  const toml::node* find(const Key& key, const char* type, std::string fallback, std::string allowed) const;
+  // Describes what a key may have.
+  struct Allowed {
+    Allowed(std::string text) : text(std::move(text)) {}
+    Allowed(const char* text) : text(text) {}
+    Allowed(const Range& range) : text(range.text()), range(range) {}
+    Allowed(const Words& words) : text(word_list(words.allowed)), words(words.allowed) {}
+    std::string text;
+    Range range = {};
+    std::vector<std::string> words = {};
+  };
+  const toml::node* find(const Key& key, const char* type, std::string fallback, Allowed allowed) const;
   void wrong(const Key& key, const toml::node& node, const std::string& allowed) const;
   std::string choice_if_given(const Key& key, const char* fallback, const Words& words) const;
   Vec3 color_at(const Key& key, const toml::node* node, const Vec3& fallback) const;

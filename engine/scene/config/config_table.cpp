@@ -91,17 +91,17 @@ std::vector<std::string> ConfigTable::keys() const {
   return names;
 }
 
-const toml::node* ConfigTable::find(const Key& key, const char* type, std::string fallback, std::string allowed) const {
+const toml::node* ConfigTable::find(const Key& key, const char* type, std::string fallback, Allowed allowed) const {
   config_->content_->asked[table_].push_back(key.name);
   const toml::node* node = table_->get(key.name);
   const std::string generic = joined(generic_, key.name);
   Config::Content& content = *config_->content_;
   if (std::string path = joined(path_, key.name); content.known_paths.insert(path).second) {
-    content.known.push_back(
-        {std::move(path), generic, type, allowed, key.unit, key.meaning, node != nullptr ? shown(*node) : fallback});
+    content.known.push_back({std::move(path), generic, type, allowed.text, key.unit, key.meaning,
+                             node != nullptr ? shown(*node) : fallback, allowed.range, std::move(allowed.words)});
   }
   if (content.documented_keys.insert(generic + '\n' + type).second)
-    content.documented.push_back({generic, type, std::move(fallback), std::move(allowed), key.unit, key.meaning});
+    content.documented.push_back({generic, type, std::move(fallback), std::move(allowed.text), key.unit, key.meaning});
   return node;
 }
 
@@ -146,7 +146,7 @@ std::string all_usable(const toml::node& node) {
 }  // namespace
 
 double ConfigTable::number(const Key& key, std::optional<double> fallback, const Range& range) const {
-  const toml::node* node = find(key, "number", fallback ? number_text(*fallback) : "required", range.text());
+  const toml::node* node = find(key, "number", fallback ? number_text(*fallback) : "required", range);
   const double instead = fallback.value_or(range.contains(1) ? 1 : range.lowest);
   if (node == nullptr) {
     if (!fallback) complain(fmt::format("'{}' is missing: {} ({})", key.name, key.meaning, range.text()));
@@ -162,7 +162,7 @@ double ConfigTable::number(const Key& key, std::optional<double> fallback, const
 }
 
 std::optional<double> ConfigTable::number_if_given(const Key& key, const Range& range) const {
-  if (find(key, "number", "none", range.text()) == nullptr) return std::nullopt;
+  if (find(key, "number", "none", range) == nullptr) return std::nullopt;
   return number(key, std::nullopt, range);
 }
 
@@ -172,8 +172,7 @@ std::optional<Vec3> ConfigTable::vector_if_given(const Key& key, const Range& ra
 }
 
 int ConfigTable::integer(const Key& key, std::optional<int> fallback, const Range& range) const {
-  const toml::node* node =
-      find(key, "whole number", fallback ? fmt::format("{}", *fallback) : "required", range.text());
+  const toml::node* node = find(key, "whole number", fallback ? fmt::format("{}", *fallback) : "required", range);
   const int instead = fallback.value_or(1);
   if (node == nullptr) {
     if (!fallback) complain(fmt::format("'{}' is missing: {} ({})", key.name, key.meaning, range.text()));
@@ -226,7 +225,7 @@ bool ConfigTable::is_one_of(const Words& words, const Key& key, const toml::node
 
 std::string ConfigTable::choice(const Key& key, std::optional<std::string> fallback, const Words& words) const {
   const std::string list = word_list(words.allowed);
-  const toml::node* node = find(key, "word", fallback ? fmt::format("\"{}\"", *fallback) : "required", list);
+  const toml::node* node = find(key, "word", fallback ? fmt::format("\"{}\"", *fallback) : "required", words);
   const std::string instead = fallback.value_or(words.allowed.front());
   if (node == nullptr) {
     if (!fallback) complain(fmt::format("'{}' is missing: {} ({})", key.name, key.meaning, list));
@@ -252,14 +251,14 @@ std::vector<std::string> ConfigTable::choices(const Key& key, const Words& words
 
 // Returns an empty text when the key is absent or wrong.
 std::string ConfigTable::choice_if_given(const Key& key, const char* fallback, const Words& words) const {
-  const toml::node* node = find(key, "word", fallback, word_list(words.allowed));
+  const toml::node* node = find(key, "word", fallback, words);
   return node != nullptr && is_one_of(words, key, *node) ? *node->value_exact<std::string>() : "";
 }
 
 std::optional<std::variant<std::string, ConfigTable>> ConfigTable::word_or_table(const Key& key,
                                                                                  const std::string& fallback,
                                                                                  const Words& words) const {
-  const toml::node* node = find(key, "word", fallback, word_list(words.allowed));
+  const toml::node* node = find(key, "word", fallback, words);
   (void)find(key, "table", "none", "a table");
   if (node == nullptr) return std::nullopt;
   if (const toml::table* table = node->as_table()) return inner(key, *table, "", "");

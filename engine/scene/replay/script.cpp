@@ -175,6 +175,7 @@ void Script::Parts::read_replay(const std::filesystem::path& assets, const std::
   for (const ConfigTable& table : root.tables({"change", "", "a value that changes while the film runs"})) {
     if (auto change = read_change(table, start.fps)) changes.push_back(std::move(*change));
   }
+  session = read_session(root);
   open_tables(plain);
   for (const TimedChange& change : changes) open_table_of(plain, change.path);
   (void)read_scene(plain);  // so that the types of all keys are known
@@ -189,7 +190,7 @@ void Script::Parts::read_replay(const std::filesystem::path& assets, const std::
 Script Script::load(const SceneSource& source, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings, std::optional<std::size_t> sweep_point) {
   auto parts = std::make_unique<Parts>(
-      Parts{source, settings, std::nullopt, load_document(source, assets), {}, {}, {}, {}, std::nullopt, {}});
+      Parts{source, settings, std::nullopt, load_document(source, assets), {}, {}, {}, {}, std::nullopt, {}, {}});
   if (supple::is_replay(parts->scene_file)) {
     parts->replay = parts->scene_file.copy();
     parts->read_replay(assets, settings, sweep_point);
@@ -215,6 +216,7 @@ ChangeCost cost_for(const std::string& name, const std::vector<TimedChange>& cha
 bool Script::is_replay() const { return parts_->replay.has_value(); }
 const SceneDef& Script::scene() const { return parts_->start; }
 const std::vector<TimedChange>& Script::changes() const { return parts_->changes; }
+const PlayedSession& Script::session() const { return parts_->session; }
 
 std::vector<const TimedChange*> Script::at_work(int frame) const {
   std::vector<const TimedChange*> result;
@@ -311,8 +313,17 @@ void Script::set_edits(LiveEdits edits) {
 
 Script Script::with(const std::vector<std::string>& settings) const {
   const Parts& own = *parts_;
-  auto parts = std::make_unique<Parts>(Parts{
-      own.source, own.settings, std::nullopt, own.scene_file.copy(), {}, own.changes, {}, {}, std::nullopt, settings});
+  auto parts = std::make_unique<Parts>(Parts{own.source,
+                                             own.settings,
+                                             std::nullopt,
+                                             own.scene_file.copy(),
+                                             {},
+                                             own.changes,
+                                             {},
+                                             {},
+                                             std::nullopt,
+                                             own.session,
+                                             settings});
   parts->start.name = own.start.name;
   Config document = parts->document_at(at_start, parts->changes.size());
   parts->start = parts->read(document);

@@ -5,6 +5,7 @@
 #include "scene/definition/scene_def.h"
 #include "scene/reading/scene_source.h"
 #include "scene/replay/live_edits.h"
+#include "scene/replay/played_session.h"
 
 namespace supple {
 
@@ -28,6 +29,8 @@ class Script {
   bool is_replay() const;
   const SceneDef& scene() const;  // as the film starts
   const std::vector<TimedChange>& changes() const;
+  // Returns what the live session has noted that wrote this replay; empty where none has.
+  const PlayedSession& session() const;
 
   // Returns the changes that alter a value between the start and the end of a frame.
   std::vector<const TimedChange*> at_work(int frame) const;
@@ -53,9 +56,10 @@ class Script {
   // Replaces all edits by those that were in force once. Throws InputError, and changes nothing, where they are of
   // another scene.
   void set_edits(LiveEdits edits);
-  // Returns the replay with all edits, which `file` will have. frames: the length of its film. Throws InputError where
-  // `file`, or the one beside it that the scene needs, is the scene that was loaded.
-  ReplayFiles replay_files(const std::filesystem::path& file, int frames) const;
+  // Returns the replay with all edits, which `file` will have. frames: the length of its film; session: what the frames
+  // so far have left. Throws InputError where `file`, or the one beside it that the scene needs, is the scene that was
+  // loaded.
+  ReplayFiles replay_files(const std::filesystem::path& file, int frames, const PlayedSession& session = {}) const;
   // Returns the same with settings, as --set takes them, that hold at any time, whatever changes. Throws InputError.
   Script with(const std::vector<std::string>& settings) const;
 

@@ -27,6 +27,7 @@ struct Script::Parts {
     std::vector<TimedChange> changes;
   };
   std::optional<Unedited> unedited;        // nothing: there was no edit yet
+  PlayedSession session;                   // of the replay
   std::vector<std::string> last_settings;  // that replace what the scene has at any time (Script::with)
 
   // Returns the scene's document at a time, with the first `count` changes applied. One of them can be left out.

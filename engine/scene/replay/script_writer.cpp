@@ -74,7 +74,7 @@ std::string comparable(const Config& document) {
 
 // Names the scene and has its settings in [set] where this says the same. Otherwise, the scene is written anew:
 // settings may reach a grab, or depend on their order.
-ReplayFiles Script::replay_files(const std::filesystem::path& file, int frames) const {
+ReplayFiles Script::replay_files(const std::filesystem::path& file, int frames, const PlayedSession& session) const {
   Parts& parts = *parts_;
   const std::filesystem::path& assets = parts.scene_file.assets();
   const std::filesystem::path scene = parts.replay ? replayed_scene(*parts.replay, assets) : parts.source.path;
@@ -84,6 +84,7 @@ ReplayFiles Script::replay_files(const std::filesystem::path& file, int frames) 
   Config replay = parts.replay ? parts.replay->copy() : Config::parse("", file.string(), assets);
   replay.make_files_absolute();
   replay.put("frames", value_of_text(fmt::format("{}", frames)), {}, {});
+  put_session(replay, session);
   for (const TimedChange& change : parts.edits.changes)
     replay.append("change", table_of_change(change, parts.start.fps), {});
   if (!parts.source.text) {
