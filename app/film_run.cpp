@@ -22,9 +22,7 @@
 #include "scene/replay/script_trial.h"
 
 namespace supple {
-namespace {
 
-// Prints warnings, and the notes from reading meshes.
 void say_remarks(const FilmPlan& plan, const LoadedFilm& film) {
   const SceneDef& scene = film.world.script().scene();
   if (scene.sweep_points > 0) {
@@ -44,6 +42,8 @@ void say_remarks(const FilmPlan& plan, const LoadedFilm& film) {
       say(stderr, fmt::format("note: collider '{}': {}\n", collider.name, note));
   }
 }
+
+namespace {
 
 void say_bodies(const RunInfo& info) {
   for (const RunInfo::Mesh& mesh : info.meshes)

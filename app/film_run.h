@@ -25,6 +25,9 @@ void add_film_options(Verb& verb, FilmCommand& command);
 // Adds the options of a film's file.
 void add_coding_options(Verb& verb, FilmCoding& coding);
 
+// Prints warnings of the scene, and the notes from reading meshes.
+void say_remarks(const FilmPlan& plan, const LoadedFilm& film);
+
 // Reads the scene from standard input where the plan names "-". Throws InputError.
 void take_standard_input(FilmPlan& plan);
 

@@ -8,6 +8,7 @@ namespace {
 void add_verbs(CommandLine& line) {
   add_render(line);
   add_replay(line);
+  add_live(line);
   add_draw(line);
   add_page(line);
   add_gallery(line);

@@ -8,6 +8,7 @@ namespace supple {
 
 void add_render(CommandLine& line);
 void add_replay(CommandLine& line);
+void add_live(CommandLine& line);
 void add_draw(CommandLine& line);
 void add_page(CommandLine& line);
 void add_gallery(CommandLine& line);

@@ -17,7 +17,7 @@ install(FILES ${PROJECT_BINARY_DIR}/supple.1.gz DESTINATION ${CMAKE_INSTALL_MAND
 include(CMakePackageConfigHelpers)
 set(supple_config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/supple)
 # Films, pictures and their files are the program's own affair.
-list(FILTER supple_libraries EXCLUDE REGEX "^supple_(render|output|film)$")
+list(FILTER supple_libraries EXCLUDE REGEX "^supple_(render|output|film|live)$")
 install(TARGETS ${supple_libraries} EXPORT supple-targets ARCHIVE COMPONENT libraries)
 install(CODE "set(engine ${PROJECT_SOURCE_DIR}/engine)
 set(folder ${CMAKE_INSTALL_INCLUDEDIR}/supple)" COMPONENT libraries)

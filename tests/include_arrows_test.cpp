@@ -22,6 +22,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"render", {"render", "base"}},
     {"output", {"output", "geometry", "base"}},
     {"film", {"film", "world", "scene", "sim", "render", "output", "geometry", "base"}},
+    {"live", {"live", "film", "world", "scene", "sim", "render", "output", "geometry", "base"}},
 };
 
 // Lists the rooms of the folders that have some, and those from which each may include, itself apart. A file that lies

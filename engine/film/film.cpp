@@ -30,12 +30,6 @@ namespace supple {
 
 namespace {
 
-std::vector<std::string> names_of(const std::vector<Body>& bodies) {
-  std::vector<std::string> names;
-  for (const Body& body : bodies) names.push_back(body.def.name);
-  return names;
-}
-
 // Checks that the folder holds all that a film needs which starts at this frame.
 void check_folder(const FilmPlan& plan, const LoadedFilm& film, const FilmStart& start) {
   const SceneDef& scene = film.world.script().scene();

@@ -47,12 +47,11 @@ void check_save_states(const std::vector<int>& frames, const SceneDef& scene, co
   }
 }
 
-namespace {
-
-// Returns the scene of a plan as the reader takes it.
 SceneSource source_of(const FilmPlan& plan) {
   return plan.scene_text ? SceneSource(plan.scene, *plan.scene_text) : SceneSource(scene_file(plan.scene));
 }
+
+namespace {
 
 // Returns the XXH64 of the points, elements and springs of a body.
 std::string mesh_hash(const Body& body) {

@@ -7,6 +7,7 @@
 #include "film/plan/film_plan.h"
 #include "output/run/run_folder.h"
 #include "scene/building/drawn_body.h"
+#include "scene/reading/scene_source.h"
 #include "world/world.h"
 
 namespace supple {
@@ -17,6 +18,9 @@ struct LoadedFilm {
   std::vector<DrawnBody> drawn;  // by body, once build_models or make_skins has made them; empty without pictures
   RunInfo info;                  // for run.json; filled in as the film goes along
 };
+
+// Returns the scene of a plan as the reader takes it.
+SceneSource source_of(const FilmPlan& plan);
 
 // Reads the scene and its meshes. command: the command line with which the program was called. Throws InputError.
 LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& command);

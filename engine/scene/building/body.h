@@ -51,4 +51,11 @@ inline Triangles surface_of(const Body& body) {
   return body.def.cloth ? body.cloth.surface.triangles : boundary_faces(body.description.mesh.tets);
 }
 
+// Returns the names of bodies, in their order.
+inline std::vector<std::string> names_of(const std::vector<Body>& bodies) {
+  std::vector<std::string> names;
+  for (const Body& body : bodies) names.push_back(body.def.name);
+  return names;
+}
+
 }  // namespace supple

@@ -388,8 +388,9 @@ std::vector<Problem> Script::warnings() const {
 std::string Script::scene_json() const { return parts_->document_at(at_start, parts_->changes.size()).as_json(); }
 std::string Script::replay_json() const { return parts_->replay ? parts_->replay->as_json() : ""; }
 
-std::vector<LiveKey> Script::live() const {
-  Config document = parts_->document_at(at_start, parts_->changes.size());
+std::vector<LiveKey> Script::live(std::optional<int> frame) const {
+  const double time = frame ? frame_time(*frame, parts_->start.fps) : at_start;
+  Config document = parts_->document_at(time, parts_->changes.size());
   open_tables(document);
   for (const BodyDef& body : parts_->start.bodies) open_table_of(document, "body." + body.name + ".contact.self");
   (void)read_scene(document);

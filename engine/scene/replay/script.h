@@ -57,7 +57,8 @@ class Script {
   // another scene.
   void set_edits(LiveEdits edits);
   // Returns the replay with all edits, which `file` will have. frames: the length of its film; session: what the frames
-  // so far have left. Throws InputError where `file`, or the one beside it that the scene needs, is the scene that was
+  // so far have left. A file in the root folder names its scene with the whole path, so that it can be read anywhere.
+  // Throws InputError where `file`, or the one beside it that the scene needs, is the scene that was
   // loaded.
   ReplayFiles replay_files(const std::filesystem::path& file, int frames, const PlayedSession& session = {}) const;
   // Returns the same with settings, as --set takes them, that hold at any time, whatever changes. Throws InputError.
@@ -65,7 +66,8 @@ class Script {
 
   std::string scene_json() const;   // as the film starts
   std::string replay_json() const;  // the file of the replay itself; empty for a scene
-  std::vector<LiveKey> live() const;
+  // Lists what can change, with the values at the start of the film, or at the end of a frame.
+  std::vector<LiveKey> live(std::optional<int> frame = {}) const;
 
  private:
   struct Parts;

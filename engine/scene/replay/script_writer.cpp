@@ -21,6 +21,7 @@ std::string scene_name(const std::filesystem::path& file, const std::filesystem:
   const std::filesystem::path scene = std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
   if (std::filesystem::equivalent(scene, assets / "scenes" / (scene.stem().string() + ".toml"), error))
     return scene.stem().string();
+  if (folder == folder.root_path()) return scene.string();  // nothing is near to the root
   const std::filesystem::path near =
       scene.lexically_relative(std::filesystem::weakly_canonical(std::filesystem::absolute(folder), error));
   return near.empty() || near.native().starts_with("..") ? scene.string() : near.string();

@@ -1,0 +1,140 @@
+#include <fmt/core.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include "app/film_run.h"
+#include "app/solvers.h"
+#include "base/console.h"
+#include "base/error.h"
+#include "base/interrupts.h"
+#include "base/text.h"
+#include "base/trace.h"
+#include "film/plan/shipped_files.h"
+#include "film/rough_motion.h"
+#include "live/server.h"
+
+namespace supple {
+namespace {
+
+struct LiveCommand {
+  FilmPlan plan;
+  LiveAddress address;
+  std::string size;    // WIDTHxHEIGHT; empty: the scene's, made smaller
+  std::string record;  // file of the replay; empty: none
+  bool paused = false;
+};
+
+// Returns the settings of the pictures' size. Pictures of a page are smaller than those of films, so that they are
+// drawn in time.
+std::vector<std::string> size_settings(const LiveCommand& command, const OutputDef& output) {
+  int width = output.width, height = output.height;
+  if (command.size.empty()) {
+    constexpr int most_pixels = 960;
+    const double smaller = std::min(1.0, double(most_pixels) / std::max(width, height));
+    width = 2 * static_cast<int>(0.5 * smaller * width + 0.5);
+    height = 2 * static_cast<int>(0.5 * smaller * height + 0.5);
+  } else {
+    int read = 0;
+    if (std::sscanf(command.size.c_str(), "%dx%d%n", &width, &height, &read) != 2 || read != std::ssize(command.size))
+      throw InputError("--size " + command.size, "wants WIDTHxHEIGHT, such as 960x540");
+  }
+  return {fmt::format("output.width={}", width), fmt::format("output.height={}", height)};
+}
+
+// Loads the scene with the size of the page's pictures, which its replay does not have.
+LoadedFilm load(const LiveCommand& command, const std::vector<std::string>& words) {
+  FilmPlan plan = command.plan;
+  const Script script = Script::load(source_of(plan), assets_folder(), plan.settings);
+  for (const std::string& setting : size_settings(command, script.scene().output)) plan.settings.push_back(setting);
+  return load_film(plan, words);
+}
+
+void say_address(const LiveServer& server, const LiveCommand& command) {
+  const bool is_loopback = command.address.address == "127.0.0.1" || command.address.address == "::1";
+  say(stdout, fmt::format("Open {} in a browser on this machine; Ctrl-C here ends it\n", server.url()));
+  std::fflush(stdout);
+  if (command.plan.quiet) return;
+  if (!is_loopback) {
+    say(stderr, "warning: whoever can reach this address and knows it can watch, and steer: it is not encrypted\n");
+  } else if (std::getenv("SSH_CONNECTION") != nullptr) {
+    const std::string port = server.url().substr(server.url().rfind(':') + 1);
+    const std::string number = port.substr(0, port.find('/'));
+    say(stderr, fmt::format("from where you are: ssh -L {}:127.0.0.1:{} to this machine, then the same address\n",
+                            number, number));
+  }
+}
+
+int run(const LiveCommand& command, const std::vector<std::string>& words) {
+  name_thread("main");
+  const FilmPlan& plan = command.plan;
+  LoadedFilm film = load(command, words);
+  if (!plan.quiet) say_remarks(plan, film);
+  build_models(plan, film);
+  catch_interrupts();
+  FilmStart start;
+  start.repeated = repeated_cuts(film.world.script().session(), names_of(film.world.bodies()));
+  find_framing(plan, start, all_solvers(), film);
+  LiveDesk desk(plan.gl, shaders_folder());
+  LiveServer server(desk, command.address, assets_folder() / "live");
+  ReplayKeeper keeper(source_of(plan), plan.settings, command.record);
+  FrameLoop loop(plan, film, start, nullptr, all_solvers(), FrameRows());
+  loop.draw_on(desk.pictures);
+  LiveSession session(desk, film.world, loop, keeper, command.paused);
+  session.tell_scene(command.record);
+  say_address(server, command);
+  const std::string undrawn = session.play();
+  if (!undrawn.empty()) throw RunError(undrawn);
+  say(stderr, fmt::format("{} played\n", count_text(long(session.rows().size()), "frame")));
+  if (!command.record.empty()) {
+    say(stderr, fmt::format("  replay   {}: supple replay films it\n", command.record));
+  } else if (session.has_unsaved_edits()) {
+    say(stderr, "warning: what was done was not saved; --record-replay FILE keeps it as it grows\n");
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_live(CommandLine& line) {
+  auto command = std::make_shared<LiveCommand>();
+  const std::vector<std::string> words = line.words();
+  Verb verb = line.verb("live", "Play a scene on a page in the browser, and keep what was done as a replay.");
+  verb.footer(
+      "Example: supple live bunny, then open the address that it prints\n"
+      "The page changes values, grabs, pauses, goes back and looks around: docs/live.md. Save gives a replay, of "
+      "which\n"
+      "supple replay FILE makes a film with the same bits.");
+  FilmPlan& plan = command->plan;
+  verb.option(
+          "SCENE|REPLAY|MODEL", plan.scene,
+          "scene, replay or model file, the name of one that ships (supple list), or - for a scene on standard input")
+      .required();
+  verb.option("--record-replay", command->record,
+              "file for the replay, which is kept as it grows; none is written over");
+  verb.option("--port", command->address.port, "of the page [one that is free]").between(1, 65535);
+  verb.option("--listen", command->address.address,
+              "address to listen to, over 127.0.0.1: others can then see the page who know its whole address");
+  verb.option("--size", command->size, "WIDTHxHEIGHT of the pictures [the scene's, at most 960 pixels]");
+  verb.flag("--paused", command->paused, "wait before the first frame");
+  verb.option("--threads", plan.threads, "threads of the solver [all cores]; results do not depend on it")
+      .between(1, 256);
+  verb.option("--set", plan.settings, "path=value over the scene's, such as solver.iterations=20; may be repeated")
+      .repeatable();
+  verb.option(
+          "--gl", [&plan](const std::string& word) { plan.gl = *value_named<GlChoice>(word); },
+          word_list(all_names<GlChoice>()))
+      .one_of(all_names<GlChoice>());
+  verb.flag(
+      "--no-cache", [&plan] { plan.cache = false; },
+      "make meshes and skins again; keep none in the user's cache folder");
+  verb.flag("--quiet", plan.quiet, "say the address alone");
+  verb.runs([command, words] {
+    take_standard_input(command->plan);
+    return run(*command, words);
+  });
+}
+
+}  // namespace supple

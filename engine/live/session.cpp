@@ -1,0 +1,491 @@
+#include "live/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base/error.h"
+#include "base/frame_time.h"
+#include "base/interrupts.h"
+#include "base/text.h"
+#include "live/control_json.h"
+#include "output/files/json_text.h"
+
+namespace supple {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::chrono::milliseconds between_looks{100};  // at requests that the program should end
+constexpr int most_late = 3;                             // frames that the film may catch up after a slow one
+constexpr std::size_t frames_of_rate = 30;               // over which the rate is measured
+constexpr std::size_t frames_of_budget = 10;             // after which the budget follows what frames take
+constexpr int frames_between_words = 10;
+constexpr double tolerance = 1.0 / 250;  // of a grab's way, over the picture's height: two pixels of 540
+constexpr const char* budget_path = "solver.budget_ms";
+constexpr double furthest = 0.3;  // that a grab moves in a frame, over the body's size
+
+std::string message_of(const InputError& error) {
+  std::string text;
+  for (const Problem& problem : error.problems()) text += (text.empty() ? "" : "; ") + problem.message;
+  return text;
+}
+
+std::string vector_text(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
+
+std::string keys_text(const std::vector<MotionKey>& keys) {
+  std::string text;
+  for (const MotionKey& key : keys)
+    text += fmt::format("{}{{ t = {}, move = {} }}", text.empty() ? "" : ", ", key.time, vector_text(key.move));
+  return "[" + text + "]";
+}
+
+Answer answer(int status, const Json& json) { return {status, json_text(json)}; }
+Answer refusal(int status, const std::string& text) { return answer(status, {{"error", text}}); }
+
+}  // namespace
+
+// Holds what a pointer has grabbed.
+struct LiveSession::Grabbed {
+  std::string body, name;
+  Vec3 place;               // where the pointer took hold [m]
+  Eigen::Vector2d pointer;  // in the picture
+  GrabbedWay way;
+};
+
+LiveSession::LiveSession(LiveDesk& desk, World& world, FrameLoop& loop, ReplayKeeper& keeper, bool starts_paused)
+    : desk_(desk), world_(world), loop_(loop), keeper_(keeper), timeline_(world), paused_(starts_paused) {
+  go_on_with_pictures();
+  tell_controls();
+  tell_words();
+  tell_state();
+}
+
+LiveSession::~LiveSession() {
+  for (const Letter& letter : desk_.mailbox.close()) letter.answer(refusal(503, "the program has ended"));
+}
+
+std::string LiveSession::play() {
+  for (;;) {
+    std::string message;
+    const FilmEnd end = loop_.run(*this, message);
+    keeper_.take(notes());
+    const std::string undrawn = desk_.pictures.error();
+    if (end == FilmEnd::interrupted || !undrawn.empty()) {
+      desk_.events.keep("end", json_text(Json{{"text", undrawn.empty() ? "the program has ended" : undrawn}}));
+      return undrawn;
+    }
+    recover(message);
+  }
+}
+
+// Goes back to the last whole frame after a step that failed, without what was done since.
+void LiveSession::recover(const std::string& message) {
+  paused_ = true;
+  go(int(timeline_.rows().size()));
+  say(message + "; the film is back at its last whole frame, without what was done after it");
+}
+
+std::optional<FilmEnd> LiveSession::ends() {
+  for (;;) {
+    if (interrupted()) return FilmEnd::interrupted;
+    take_letters();
+    if (!desk_.pictures.error().empty()) return FilmEnd::failed;
+    if (desk_.pictures.has_own_view() != told_own_view_) tell_state();
+    const Clock::time_point now = Clock::now();
+    if (std::exchange(steps_once_, false) || (!paused_ && now >= due_)) break;
+    desk_.mailbox.wait_until(paused_ ? now + between_looks : std::min(due_, now + between_looks));
+  }
+  const std::chrono::duration<double, std::milli> period(period_ms());
+  const auto ticks = std::chrono::duration_cast<Clock::duration>(period);
+  begun_ = Clock::now();
+  due_ = std::max(due_, begun_ - most_late * ticks) + ticks;
+  release_dropped();
+  move_to_pointer();
+  return std::nullopt;
+}
+
+void LiveSession::take(FrameRow row) {
+  const Clock::time_point now = Clock::now();
+  frame_ms_.push_back(std::chrono::duration<double, std::milli>(now - begun_).count());
+  if (frame_ms_.size() > frames_of_budget) frame_ms_.pop_front();
+  ended_.push_back(now);
+  if (ended_.size() > frames_of_rate) ended_.pop_front();
+  tell_frame(row);
+  tally_.add(row);
+  timeline_.add(std::move(row), world_);
+  const int frames = world_.frames();
+  if (frames % frames_between_words == 0) {
+    tell_words();
+    if (!world_.script().at_work(frames).empty()) tell_controls();
+  }
+  if (keeps_rate_ && frames % frames_of_budget == 0) adjust_budget();
+  if (keeper_.wants_notes()) keeper_.take(notes());
+}
+
+void LiveSession::take_letters() {
+  for (const Letter& letter : desk_.mailbox.take()) serve(letter);
+}
+
+void LiveSession::serve(const Letter& letter) {
+  if (letter.command.deed == Deed::save) {
+    saved_ = timeline_.deeds();
+    keeper_.write(notes(), [answer = letter.answer, name = world_.script().scene().name](const ReplayFiles& files,
+                                                                                         const std::string& error) {
+      if (!error.empty()) return answer(refusal(500, error));
+      Json json = {{"name", name + "-live.toml"}, {"replay", files.replay_text}};
+      json["scene_name"] = files.scene.empty() ? Json(nullptr) : Json(files.scene.filename().string());
+      json["scene"] = files.scene.empty() ? Json(nullptr) : Json(files.scene_text);
+      answer({200, json_text(json)});
+    });
+    return;
+  }
+  try {
+    Json json = {{"input", letter.input}};
+    json.update(carry_out(letter.command));
+    desk_.pictures.note_input(letter.input);
+    letter.answer(answer(200, json));
+  } catch (const InputError& error) {
+    letter.answer(refusal(422, message_of(error)));
+  } catch (const RunError& error) {
+    letter.answer(refusal(500, error.what()));
+  }
+}
+
+LiveSession::Json LiveSession::carry_out(const Command& command) {
+  switch (command.deed) {
+    case Deed::set: change(command.path, command.value, command.over); break;
+    case Deed::pause: paused_ = true; break;
+    case Deed::run:
+      paused_ = false;
+      due_ = Clock::now();
+      ended_.clear();
+      break;
+    case Deed::step: paused_ = steps_once_ = true; break;
+    case Deed::speed:
+      speed_ = command.factor;
+      due_ = Clock::now();
+      ended_.clear();
+      break;
+    case Deed::restart: go(0); break;
+    case Deed::go: go(command.frame); break;
+    case Deed::grab: return grab(command);
+    case Deed::drag: drag(command); return Json::object();
+    case Deed::drop: drop(command.on); break;
+    case Deed::release: release(command.body, command.name); break;
+    case Deed::keep_view: keep_view(); break;
+    case Deed::show: show(command); break;
+    case Deed::keep_rate: keep_rate(command.on); break;
+    case Deed::orbit:
+    case Deed::pan:
+    case Deed::zoom:
+    case Deed::home:
+    case Deed::save: break;  // these do not come here (server.cpp)
+  }
+  tell_state();
+  return Json::object();
+}
+
+// Changes a value from the next frame on, as a replay does.
+void LiveSession::change(const std::string& path, const std::string& value, double over) {
+  const auto parsed = ConfigValue::parse(value, path);
+  TimedChange change{path,
+                     {},
+                     0,
+                     over,
+                     Ease::smooth,
+                     RampRule::difference,
+                     false,
+                     {},
+                     {},
+                     parsed ? *parsed : ConfigValue::parse(toml_text(value), path).value(),
+                     {path}};
+  world_.change(change);
+  timeline_.add({world_.frames(), std::move(change)});
+  if (!path.ends_with(".keys")) tell_controls();
+}
+
+std::string LiveSession::name_for_grab(const Body& body) const {
+  for (std::size_t number = 1 + world_.script().edits().grabs.size();; ++number) {
+    std::string name = fmt::format("hand-{}", number);
+    if (std::ranges::find(body.def.handles, name, &HandleDef::name) == body.def.handles.end()) return name;
+  }
+}
+
+LiveSession::Json LiveSession::grab(const Command& command) {
+  if (grabbed_) drop(false);
+  const OutputDef& output = world_.scene().output;
+  const double aspect = double(output.width) / output.height;
+  const Camera camera = desk_.pictures.seen();
+  const std::optional<Pick> found = pick(world_, camera, aspect, command.at);
+  if (!found) throw InputError("grab", "nothing is there");
+  const Body& body = world_.bodies()[found->body];
+  const std::string name = name_for_grab(body);
+  const LiveGrab grab{body.def.name, name, found->vertices, found->stiffness};
+  world_.grab(grab);
+  timeline_.add({world_.frames(), grab});
+  grabbed_ = std::make_unique<Grabbed>(Grabbed{body.def.name, name, found->place, command.at,
+                                               GrabbedWay(tolerance * picture_height_at(camera, found->place),
+                                                          furthest * world_.body(found->body).model().size)});
+  tell_state();
+  return {{"grab", name}, {"body", body.def.name}};
+}
+
+void LiveSession::drag(const Command& command) {
+  if (!grabbed_) throw InputError("drag", "nothing is grabbed");
+  grabbed_->pointer = command.at;
+}
+
+// Plans the way of what is grabbed so that it is where the pointer is when the next frame ends.
+void LiveSession::move_to_pointer() {
+  if (!grabbed_) return;
+  const SceneDef& scene = world_.scene();
+  const double aspect = double(scene.output.width) / scene.output.height;
+  const Vec3 there = point_in_plane(desk_.pictures.seen(), aspect, grabbed_->pointer, grabbed_->place);
+  const auto keys =
+      grabbed_->way.follow(frame_time(world_.frames(), scene.fps), 1 / scene.fps, there - grabbed_->place);
+  if (!keys) return;
+  try {
+    change(fmt::format("body.{}.handles.{}.keys", grabbed_->body, grabbed_->name), keys_text(*keys), 0);
+  } catch (const InputError& error) {
+    say(message_of(error));
+  }
+}
+
+void LiveSession::drop(bool stays) {
+  if (!grabbed_) return;
+  const auto held = std::exchange(grabbed_, nullptr);
+  if (stays) {
+    pinned_.push_back(held->name);
+  } else {
+    release(held->body, held->name);
+  }
+}
+
+// Lets a grab go, in the frame after the one in which it takes hold if need be.
+void LiveSession::release(const std::string& body, const std::string& name) {
+  const auto holds = [&](const LiveGrab& grab) { return grab.body == body && grab.name == name; };
+  const std::vector<LiveGrab> all = holding();
+  const auto grab = std::ranges::find_if(all, holds);
+  if (grab != all.end() && grab->from >= world_.frames() / world_.scene().fps) {
+    pending_.push_back({body, name});
+    return;
+  }
+  world_.release(body, name);
+  timeline_.add({world_.frames(), Release{body, name}});
+  std::erase(pinned_, name);
+}
+
+void LiveSession::release_dropped() {
+  for (const Release& dropped : std::exchange(pending_, {})) release(dropped.body, dropped.handle);
+}
+
+// Returns the grabs that hold, and those that will in the next frame.
+std::vector<LiveGrab> LiveSession::holding() const {
+  std::vector<LiveGrab> grabs;
+  for (const LiveGrab& grab : world_.script().edits().grabs)
+    if (std::isinf(grab.until)) grabs.push_back(grab);
+  return grabs;
+}
+
+// Goes back to the film's first frames, without what was done after them.
+void LiveSession::go(int frames) {
+  const int made = int(timeline_.rows().size());
+  if (frames > made) throw InputError("frame", fmt::format("the film has {} so far", count_text(made, "frame")));
+  if (frames < made) keeper_.take(notes());  // what is left behind
+  grabbed_.reset();
+  pending_.clear();
+  const WorldState state = timeline_.state_before(frames, world_.script().edits());
+  loop_.go_to(state, FrameRows());  // before frames are made again: the pictures see all that was changed
+  timeline_.go_on_to(frames, world_);
+  loop_.go_to(world_.state(), FrameRows(timeline_.rows()));
+  if (frames > 0 && world_.hash() != timeline_.rows().back().state_hash)
+    say(fmt::format("frame {} came out with other bits than before", frames));
+  for (const LiveGrab& grab : holding())
+    if (std::ranges::find(pinned_, grab.name) == pinned_.end()) release(grab.body, grab.name);
+  std::erase_if(pinned_, [all = holding()](const std::string& name) {
+    return std::ranges::find(all, name, &LiveGrab::name) == all.end();
+  });
+  tally_ = RowTally(timeline_.rows());
+  ended_.clear();
+  due_ = Clock::now();
+  keeper_.take(notes(), frames < made);
+  loop_.show_again();
+  tell_controls();
+  tell_words();
+  tell_state();
+}
+
+// Lets the target draw on the loop's stage, beginning with the world as it is.
+void LiveSession::go_on_with_pictures() {
+  desk_.pictures.begin(*loop_.stage());
+  loop_.show_again();
+}
+
+void LiveSession::show(const Command& command) {
+  const std::string field = command.field.value_or(field_);
+  const bool wireframe = command.wireframe.value_or(wireframe_), marks = command.marks.value_or(marks_);
+  loop_.dress({fmt::format("field.quantity={}", field), fmt::format("look.wireframe={}", wireframe),
+               fmt::format("look.marks={}", marks)});
+  field_ = field;
+  wireframe_ = wireframe;
+  marks_ = marks;
+  go_on_with_pictures();
+}
+
+void LiveSession::keep_view() {
+  const Camera camera = desk_.pictures.seen();
+  change("camera",
+         fmt::format("{{ position = {}, target = {}, fov_deg = {} }}", vector_text(camera.eye),
+                     vector_text(camera.target), camera.fov_deg),
+         0);
+  say("the film of the replay has this view from here on");
+}
+
+// Returns the value in force in the next frame, as a scene's file would have it.
+std::string LiveSession::value_of(const std::string& path) const {
+  for (const LiveKey& key : world_.script().live(world_.frames()))
+    if (key.key.path == path) return key.key.value;
+  return "";
+}
+
+void LiveSession::keep_rate(bool on) {
+  if (on == keeps_rate_) return;
+  keeps_rate_ = on;
+  if (on) {
+    budget_before_ = value_of(budget_path);
+    budget_ms_ = period_ms() / double(world_.size() * std::size_t(world_.scene().substeps));
+    adjust_budget();
+  } else {
+    change(budget_path, budget_before_, 0);
+  }
+}
+
+// Gives steps as much more or less time as the last frames were too quick or too slow.
+void LiveSession::adjust_budget() {
+  constexpr double used = 0.95, least = 0.3;  // of the time that a frame has; of a budget [ms]
+  std::vector<double> took(frame_ms_.begin(), frame_ms_.end());
+  if (took.empty()) return;
+  std::ranges::sort(took);
+  const double steps = double(world_.size()) * world_.scene().substeps;
+  const double spare = used * period_ms() - took[took.size() / 2];
+  const double budget = std::clamp(budget_ms_ + 0.7 * spare / steps, least, period_ms() / steps);
+  if (std::abs(budget - budget_ms_) < 0.05 * budget_ms_ && value_of(budget_path) != budget_before_) return;
+  budget_ms_ = budget;
+  change(budget_path, fmt::format("{:.2f}", budget), 0);
+}
+
+ReplayNotes LiveSession::notes() const {
+  return {int(timeline_.rows().size()), world_.script().edits(), timeline_.played()};
+}
+
+// Returns how fast the film runs, over the speed that is wanted; 1 until it is known.
+double LiveSession::measured_rate() {
+  if (ended_.size() < 2) return 1;
+  const std::chrono::duration<double> took = ended_.back() - ended_.front();
+  return double(ended_.size() - 1) / (world_.scene().fps * speed_ * took.count());
+}
+
+void LiveSession::tell_scene(const std::string& record) {
+  const SceneDef& scene = world_.script().scene();
+  Json bodies = Json::array(), fields = Json::array();
+  for (const Body& body : world_.bodies()) {
+    const TetMesh& mesh = body.description.mesh;
+    bodies.push_back({{"name", body.def.name},
+                      {"vertices", mesh.rest.rows()},
+                      {"elements", mesh.tets.rows() + std::ssize(body.description.springs)}});
+  }
+  for (const std::string& name : all_names<FieldQuantity>())
+    if (name != name_of(FieldQuantity::distance)) fields.push_back(name);  // it needs another run
+  const std::pair<const char*, Json> all[] = {{"title", scene.title.empty() ? scene.name : scene.title},
+                                              {"scene", scene.name},
+                                              {"fps", scene.fps},
+                                              {"width", scene.output.width},
+                                              {"height", scene.output.height},
+                                              {"bodies", bodies},
+                                              {"fields", fields},
+                                              {"record", record.empty() ? Json(nullptr) : Json(record)}};
+  for (const auto& [name, value] : all) desk_.events.keep_silently(name, json_text(value));
+}
+
+bool LiveSession::has_unsaved_edits() const { return timeline_.deeds() > saved_; }
+
+void LiveSession::tell_frame(const FrameRow& row) {
+  double error = 0, motion = 0;
+  int iterations = 0;
+  bool unsolved = false;
+  for (const BodyRow& body : row.bodies) {
+    error = std::max(error, body.error_estimate);
+    motion = std::max(motion, body.motion_estimate);
+    iterations += body.iterations;
+    unsolved = unsolved || body.unsolved;
+  }
+  const Json json = {{"frame", row.frame + 1},
+                     {"time", row.time_s},
+                     {"ms", row.step_ms},
+                     {"change_ms", row.change_ms.value_or(0)},
+                     {"draw_ms", row.draw_ms.value_or(0) + desk_.pictures.picture_ms()},
+                     {"iterations", iterations},
+                     {"error", error},
+                     {"motion", motion},
+                     {"rate", measured_rate()},
+                     {"unsolved", unsolved}};
+  desk_.events.add("frame", json_text(json));
+}
+
+void LiveSession::tell_state() {
+  told_own_view_ = desk_.pictures.has_own_view();
+  Json pins = Json::array();
+  for (const LiveGrab& grab : holding()) {
+    if (std::ranges::find(pinned_, grab.name) != pinned_.end())
+      pins.push_back({{"body", grab.body}, {"name", grab.name}});
+  }
+  const Json json = {{"paused", paused_},
+                     {"speed", speed_},
+                     {"frame", world_.frames()},
+                     {"first", 0},
+                     {"last", world_.frames()},
+                     {"field", field_},
+                     {"wireframe", wireframe_},
+                     {"marks", marks_},
+                     {"keeps_rate", keeps_rate_},
+                     {"own_view", told_own_view_},
+                     {"pins", pins},
+                     {"grabbed", grabbed_ ? Json(grabbed_->name) : Json(nullptr)}};
+  desk_.events.keep("state", json_text(json));
+}
+
+// Tells the values that have changed; or all, where others can change now.
+void LiveSession::tell_controls() {
+  std::vector<LiveKey> now = world_.script().live(world_.frames());
+  for (const LiveGrab& grab : world_.script().edits().grabs) {  // the page has other ways to move these
+    const std::string prefix = fmt::format("body.{}.handles.{}.", grab.body, grab.name);
+    std::erase_if(now, [&prefix](const LiveKey& key) { return key.key.path.starts_with(prefix); });
+  }
+  const auto path_of = [](const LiveKey& key) { return key.key.path; };
+  const bool same_keys = std::ranges::equal(now, told_controls_, {}, path_of, path_of);
+  desk_.events.keep_silently("controls", json_text(controls_json(now)));
+  for (std::size_t i = 0; i < now.size() && same_keys; ++i) {
+    if (now[i].key.value != told_controls_[i].key.value)
+      desk_.events.add("value", json_text(Json{{"path", now[i].key.path}, {"value", now[i].key.value}}));
+  }
+  if (!same_keys) desk_.events.add("controls", json_text(controls_json(now)));
+  told_controls_ = std::move(now);
+}
+
+void LiveSession::tell_words() {
+  std::vector<std::string> words = tally_.warnings();
+  if (const std::string unsolved = tally_.unsolved_text(); !unsolved.empty()) words.push_back(unsolved);
+  if (const std::string error = keeper_.error(); !error.empty()) words.push_back(error);
+  const std::string text = json_text(Json(words));
+  if (text == told_words_) return;
+  told_words_ = text;
+  desk_.events.keep("words", text);
+}
+
+void LiveSession::say(const std::string& text) { desk_.events.add("say", json_text(Json{{"text", text}})); }
+
+}  // namespace supple

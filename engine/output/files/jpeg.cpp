@@ -1,0 +1,74 @@
+#include "output/files/jpeg.h"
+
+#include <csetjmp>
+#include <cstdio>  // before jpeglib.h, which needs it
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include <jpeglib.h>
+
+#include "base/error.h"
+
+namespace supple {
+namespace {
+
+struct JpegErrors {
+  jpeg_error_mgr manager;  // first, so that the library's pointer to it is one to this struct
+  std::jmp_buf back;
+  char message[JMSG_LENGTH_MAX];
+};
+
+// The library must not return from an error, and is C, through which no exception may pass.
+[[noreturn]] void leave(j_common_ptr info) {
+  auto* errors = reinterpret_cast<JpegErrors*>(info->err);
+  info->err->format_message(info, errors->message);
+  std::longjmp(errors->back, 1);
+}
+
+// Returns false after an error. The memory of the result is the caller's to free in both cases. No object with a
+// destructor may live in this function, which errors leave by a jump.
+bool compress(int width, int height, const std::uint8_t* rgb, int quality, unsigned char** bytes, unsigned long* size,
+              JpegErrors& errors) {
+  jpeg_compress_struct info{};
+  info.err = jpeg_std_error(&errors.manager);
+  errors.manager.error_exit = leave;
+  if (setjmp(errors.back) != 0) {
+    jpeg_destroy_compress(&info);
+    return false;
+  }
+  jpeg_create_compress(&info);
+  jpeg_mem_dest(&info, bytes, size);
+  info.image_width = static_cast<JDIMENSION>(width);
+  info.image_height = static_cast<JDIMENSION>(height);
+  info.input_components = 3;
+  info.in_color_space = JCS_RGB;
+  jpeg_set_defaults(&info);
+  jpeg_set_quality(&info, quality, TRUE);
+  info.comp_info[0].h_samp_factor = info.comp_info[0].v_samp_factor = 1;
+  jpeg_start_compress(&info, TRUE);
+  const std::size_t row = 3 * static_cast<std::size_t>(width);
+  while (info.next_scanline < info.image_height) {
+    JSAMPROW line = const_cast<JSAMPROW>(rgb + row * info.next_scanline);  // which is only read
+    jpeg_write_scanlines(&info, &line, 1);
+  }
+  jpeg_finish_compress(&info);
+  jpeg_destroy_compress(&info);
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> jpeg_bytes(int width, int height, const std::vector<std::uint8_t>& rgb, int quality) {
+  SUPPLE_CHECK(rgb.size(), ==, 3 * std::size_t(width) * std::size_t(height));
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  const std::unique_ptr<unsigned char*, void (*)(unsigned char**)> owner(&bytes,
+                                                                         [](unsigned char** one) { std::free(*one); });
+  JpegErrors errors{};
+  if (!compress(width, height, rgb.data(), quality, &bytes, &size, errors))
+    throw RunError(std::string("a picture could not be compressed: ") + errors.message);
+  return {bytes, bytes + size};
+}
+
+}  // namespace supple
