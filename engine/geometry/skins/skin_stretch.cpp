@@ -39,8 +39,9 @@ double largest_element_stretch(const TetMesh& mesh, const Positions& now) {
   };
   for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
     const Mat3 gradient = edges(now, e) * edges(mesh.rest, e).inverse();
-    if (gradient.squaredNorm() <= square) continue;  // the sum of all squares is at least the largest
-    const Eigen::SelfAdjointEigenSolver<Mat3> squares(gradient.transpose() * gradient, Eigen::EigenvaluesOnly);
+    const Mat3 product = gradient.transpose() * gradient;
+    if (product.squaredNorm() <= square * square) continue;  // no eigenvalue is above this norm
+    const Eigen::SelfAdjointEigenSolver<Mat3> squares(product, Eigen::EigenvaluesOnly);
     square = std::max(square, squares.eigenvalues().maxCoeff());
   }
   return std::sqrt(square);
