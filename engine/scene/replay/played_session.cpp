@@ -10,6 +10,7 @@
 namespace supple {
 namespace {
 
+constexpr std::size_t digits = 16;        // of a hash
 constexpr std::size_t numbers_a_cut = 4;  // frame, substep, and those of BudgetCuts::after
 
 std::vector<std::uint64_t> read_hashes(const ConfigTable& session) {
@@ -19,8 +20,9 @@ std::vector<std::uint64_t> read_hashes(const ConfigTable& session) {
   for (const std::string& text : std::get<std::vector<std::string>>(texts)) {
     const char* end = text.data() + text.size();
     const auto [read_to, error] = std::from_chars(text.data(), end, hashes.emplace_back(), 16);
-    if (error == std::errc() && read_to == end) continue;
-    session.complain("hashes", fmt::format("hashes: \"{}\" is no hash, which has 16 digits 0 to 9 and a to f", text));
+    if (text.size() == digits && error == std::errc() && read_to == end) continue;
+    session.complain("hashes",
+                     fmt::format("hashes: \"{}\" is no hash, which has {} digits 0 to 9 and a to f", text, digits));
     return {};
   }
   return hashes;
