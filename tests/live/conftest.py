@@ -96,7 +96,7 @@ class Page:
 class Session:
     """A running `supple live`, and its first page."""
 
-    def __init__(self, folder, *arguments):
+    def __init__(self, folder, *arguments, claims=True):
         self.folder = folder
         self.process = subprocess.Popen([PROGRAM, "live", *arguments, "--size", "160x90"], cwd=folder,
                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -104,7 +104,7 @@ class Session:
         address = re.search(r"http://([^:]+):(\d+)(/[0-9a-f]{32}/)", self.line)
         assert address, self.line + self.process.stderr.read()
         self.host, self.port, self.base = address[1], int(address[2]), address[3]
-        self.page = Page(self.host, self.port, self.base)
+        self.page = Page(self.host, self.port, self.base) if claims else None
 
     def watcher(self):
         return Page(self.host, self.port, self.base, watches=True)
@@ -122,8 +122,8 @@ def live(tmp_path):
     """Starts sessions in a folder of their own, and ends them."""
     started = []
 
-    def start(*arguments):
-        started.append(Session(tmp_path, *arguments))
+    def start(*arguments, **options):
+        started.append(Session(tmp_path, *arguments, **options))
         return started[-1]
 
     yield start

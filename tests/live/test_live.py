@@ -1,4 +1,5 @@
 """Sessions of `supple live` as a page has them: what is done is a replay with the same bits, what is wrong is refused."""
+import os
 import random
 import signal
 import time
@@ -77,7 +78,7 @@ def test_everything_that_a_page_does_is_a_replay(live, scene, tmp_path):
     assert "not as the live session played it" in said
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(int(os.environ.get("SUPPLE_LIVE_SESSIONS", 3))))
 def test_random_sessions_are_replays(live, scene, tmp_path, seed):
     choose = random.Random(seed)
     session = live(scene, "--set", "substeps=2")
