@@ -1,9 +1,11 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <string>
+#include <thread>
 
 #include "app/film_run.h"
 #include "app/solvers.h"
@@ -67,8 +69,13 @@ void say_address(const LiveServer& server, const LiveCommand& command) {
   }
 }
 
-int run(const LiveCommand& command, const std::vector<std::string>& words) {
+// Returns the number of threads for the solver where none is asked for: one core is left to the pictures. Steps whose
+// threads wait for each other suffer most where there are more threads than cores.
+int usual_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1); }
+
+int run(LiveCommand command, const std::vector<std::string>& words) {
   name_thread("main");
+  if (command.plan.threads == 0) command.plan.threads = usual_threads();
   const FilmPlan& plan = command.plan;
   LoadedFilm film = load(command, words);
   if (!plan.quiet) say_remarks(plan, film);
@@ -119,7 +126,7 @@ void add_live(CommandLine& line) {
               "address to listen to, over 127.0.0.1: others can then see the page who know its whole address");
   verb.option("--size", command->size, "WIDTHxHEIGHT of the pictures [the scene's, at most 960 pixels]");
   verb.flag("--paused", command->paused, "wait before the first frame");
-  verb.option("--threads", plan.threads, "threads of the solver [all cores]; results do not depend on it")
+  verb.option("--threads", plan.threads, "threads of the solver [all cores but one]; results do not depend on it")
       .between(1, 256);
   verb.option("--set", plan.settings, "path=value over the scene's, such as solver.iterations=20; may be repeated")
       .repeatable();

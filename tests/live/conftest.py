@@ -59,6 +59,10 @@ class Page:
         found = [data for event, data in self.events if event == name]
         return found[-1] if found else None
 
+    def state(self):
+        """Returns the newest state that the page was told."""
+        return self.last("state") or self.wait_for("hello")["state"]
+
     def wait_for(self, name, holds=lambda data: True, timeout=30):
         """Returns the newest event of this name once one holds that comes from now on, or is there."""
         end = time.monotonic() + timeout

@@ -110,7 +110,7 @@ def test_random_sessions_are_replays(live, scene, tmp_path, seed):
         elif deed == "speed":
             page.do(do="speed", factor=choose.choice([0.5, 1, 4]))
         elif deed == "go" and choose.random() < 0.5:
-            page.do(do="go", frame=choose.randint(0, page.do(do="pause") and page.last("state")["frame"]))
+            page.do(do="go", frame=choose.randint(0, page.do(do="pause") and page.state()["frame"]))
             held = False
         elif deed == "show" and choose.random() < 0.3:
             page.do(do="show", field=choose.choice(["none", "speed", "volume"]))
