@@ -16,6 +16,7 @@
 #include "base/trace.h"
 #include "film/plan/shipped_files.h"
 #include "film/rough_motion.h"
+#include "live/gate.h"
 #include "live/server.h"
 
 namespace supple {
@@ -55,7 +56,7 @@ LoadedFilm load(const LiveCommand& command, const std::vector<std::string>& word
 }
 
 void say_address(const LiveServer& server, const LiveCommand& command) {
-  const bool is_loopback = command.address.address == "127.0.0.1" || command.address.address == "::1";
+  const bool is_loopback = reach_of(command.address.address) == Reach::loopback;
   say(stdout, fmt::format("Open {} in a browser on this machine; Ctrl-C here ends it\n", server.url()));
   std::fflush(stdout);
   if (command.plan.quiet) return;
@@ -64,7 +65,7 @@ void say_address(const LiveServer& server, const LiveCommand& command) {
   } else if (std::getenv("SSH_CONNECTION") != nullptr) {
     const std::string port = server.url().substr(server.url().rfind(':') + 1);
     const std::string number = port.substr(0, port.find('/'));
-    say(stderr, fmt::format("from where you are: ssh -L {}:127.0.0.1:{} to this machine, then the same address\n",
+    say(stderr, fmt::format("from where you are: ssh -L {}:127.0.0.1:{} to this machine, then this address there\n",
                             number, number));
   }
 }
@@ -93,13 +94,14 @@ int run(LiveCommand command, const std::vector<std::string>& words) {
   session.tell_scene(command.record);
   say_address(server, command);
   const std::string undrawn = session.play();
-  if (!undrawn.empty()) throw RunError(undrawn);
-  say(stderr, fmt::format("{} played\n", count_text(long(session.rows().size()), "frame")));
-  if (!command.record.empty()) {
+  const std::string unkept = keeper.finish();
+  if (!plan.quiet) say(stderr, fmt::format("{} played\n", count_text(session.frames(), "frame")));
+  if (!unkept.empty()) throw RunError(unkept);
+  if (!command.record.empty() && session.frames() > 0 && !plan.quiet)
     say(stderr, fmt::format("  replay   {}: supple replay films it\n", command.record));
-  } else if (session.has_unsaved_edits()) {
+  if (command.record.empty() && session.has_unsaved_edits())
     say(stderr, "warning: what was done was not saved; --record-replay FILE keeps it as it grows\n");
-  }
+  if (!undrawn.empty()) throw RunError(undrawn);
   return 0;
 }
 
@@ -137,7 +139,7 @@ void add_live(CommandLine& line) {
   verb.flag(
       "--no-cache", [&plan] { plan.cache = false; },
       "make meshes and skins again; keep none in the user's cache folder");
-  verb.flag("--quiet", plan.quiet, "say the address alone");
+  verb.flag("--quiet", plan.quiet, "say the address, and nothing but errors and warnings of what was not saved");
   verb.runs([command, words] {
     take_standard_input(command->plan);
     return run(*command, words);

@@ -66,7 +66,7 @@ const std::vector<std::pair<std::regex, std::regex>> cages = {
     {std::regex("cholmod\\.h"), std::regex("engine/sim/linear/cholesky\\.cpp")},
     {std::regex("png\\.h"), std::regex("engine/(output/files/png_file|geometry/reader/texture_reader)\\.cpp")},
     {std::regex("jpeglib\\.h"), std::regex("engine/(output/files/jpeg|geometry/reader/texture_reader)\\.cpp")},
-    {std::regex("microhttpd\\.h"), std::regex("engine/live/server\\.cpp")},
+    {std::regex("microhttpd\\.h"), std::regex("engine/live/(server\\.cpp|response\\.h)")},
     {std::regex("stb/.*"), std::regex("engine/geometry/reader/texture_reader\\.cpp")},
     {std::regex("(GL|EGL)/.*"), std::regex("engine/render/.*")},
     {std::regex("ft2build\\.h"), std::regex("engine/render/caption\\.cpp")},

@@ -45,11 +45,12 @@ function short_number(value, digits = 3) {
   return String(Number(value.toPrecision(digits)));
 }
 
+// Shows a remark for a while, or until the next one where it tells of a refusal.
 let remark_timer = 0;
-function remark(text) {
+function remark(text, stays = false) {
   write(by_id("remark"), text);
   clearTimeout(remark_timer);
-  remark_timer = setTimeout(() => write(by_id("remark"), ""), 8000);
+  if (!stays) remark_timer = setTimeout(() => write(by_id("remark"), ""), 8000);
 }
 
 const steers = () => page.hello !== null && page.hello.writer;
@@ -109,14 +110,14 @@ async function order(command) {
   try {
     return await send_patiently(command);
   } catch (refusal) {
-    remark(refusal.message);
+    remark(refusal.message, true);
     return null;
   }
 }
 
 // Sends one command at a time, and then the newest that came meanwhile: the program sets the pace.
 class Lane {
-  constructor({ taken = () => {}, refused = refusal => remark(refusal.message), settled = () => {} } = {}) {
+  constructor({ taken = () => {}, refused = refusal => remark(refusal.message, true), settled = () => {} } = {}) {
     Object.assign(this, { taken, refused, settled, next: null, running: null });
   }
 
@@ -160,18 +161,17 @@ function move_view(kind, by) {
   if (!view_moves.running) send_view_moves();
 }
 
+// Takes as much of the moves that have added up as one command may have.
 function next_view_move() {
-  const { orbit, pan, zoom } = view_moves;
-  if (orbit.some(Boolean)) {
-    view_moves.orbit = [0, 0];
-    return { do: "orbit", by: orbit };
+  for (const [kind, most] of [["orbit", 180], ["pan", 5]]) {
+    if (!view_moves[kind].some(Boolean)) continue;
+    const by = view_moves[kind].map(value => clamp(value, -most, most));
+    view_moves[kind] = view_moves[kind].map((value, i) => value - by[i]);
+    return { do: kind, by };
   }
-  if (pan.some(Boolean)) {
-    view_moves.pan = [0, 0];
-    return { do: "pan", by: pan };
-  }
-  view_moves.zoom = 1;
-  return zoom === 1 ? null : { do: "zoom", by: zoom };
+  const by = clamp(view_moves.zoom, 0.2, 5);
+  view_moves.zoom /= by;
+  return by === 1 ? null : { do: "zoom", by };
 }
 
 async function send_view_moves() {
@@ -184,7 +184,7 @@ async function send_view_moves() {
         move_view(command.do, command.by);
         await sleep(busy_pause_ms);
       } else {
-        remark(refusal.message);
+        remark(refusal.message, true);
       }
     }
   }
@@ -211,7 +211,7 @@ class Grab {
     try {
       this.body = (await send_patiently({ do: "grab", ...this.asked_at })).body;
     } catch (refusal) {
-      if (refusal.status !== 422) remark(refusal.message);
+      if (refusal.status !== 422) remark(refusal.message, true);
       return false;
     }
     page.unsaved = true;
@@ -495,6 +495,7 @@ function press_key(event) {
   }
   if (belongs_to_focus(event)) return;
   const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+  if (event.repeat && !(key in arrows || "+-=".includes(key))) return event.preventDefault();  // a key that is held
   if (key === "Enter") {
     if (press_enter()) event.preventDefault();
     return;
@@ -609,7 +610,7 @@ function listen_to_bar() {
   order_by_box("marks", on => ({ do: "show", marks: on }));
   order_by_box("keep-rate", on => ({ do: "keep_rate", on }));
   by_id("timeline").addEventListener("input", () => {
-    chooses_frame = true;
+    chooses_frame = Number(by_id("timeline").value) < page.state.last;
     show_time();
   });
   document.addEventListener("pointerdown", event => {
@@ -1003,6 +1004,9 @@ function build_panel(specs) {
   if (focus && document.activeElement.id !== focus && by_id(focus)) by_id(focus).focus();
 }
 
+// Different paths have different ids, which have no characters that selectors read in their own way.
+const id_of_control = path => "control-" + path.replace(/[^A-Za-z0-9-]/g, sign => `_${sign.codePointAt(0).toString(16)}_`);
+
 function build_section(group, specs, was_open) {
   const body = page.hello.bodies.find(each => each.name === group);
   const about = body ? `${body.vertices} vertices, ${body.elements} elements` : "";
@@ -1011,7 +1015,7 @@ function build_section(group, specs, was_open) {
   section.open = was_open ?? !(group === "camera" || group === "look");
   for (const spec of specs) {
     if (!starts.has(spec.path)) starts.set(spec.path, spec.value);
-    const control = new Control(spec, starts.get(spec.path), `control-${spec.path.replace(/[^\w-]/g, "_")}`);
+    const control = new Control(spec, starts.get(spec.path), id_of_control(spec.path));
     controls.set(spec.path, control);
     section.append(control.node);
   }
@@ -1084,7 +1088,7 @@ function show_pace() {
 }
 
 function show_role() {
-  const alone = page.state && !page.state.writer_there;
+  const alone = page.hello && !page.hello.steered;
   const text = page.watches ? "You are watching." : alone ? "Nobody steers now. You are watching."
     : "Somebody else steers. You are watching.";
   by_id("watching").hidden = steers() || !page.hello;
@@ -1108,7 +1112,7 @@ function take_hello(hello) {
   const knows_all = page.hello && page.hello.scene === hello.scene;
   page.hello = hello;
   page.state = hello.state;
-  page.ended = "";
+  page.ended = hello.end ? hello.end.text : "";
   if (!knows_all && hello.state.last - hello.state.first > 5 * hello.fps) page.unsaved = true;  // by an earlier page
   write(by_id("title"), hello.title);
   document.title = `${hello.title} – supple live`;
@@ -1133,6 +1137,7 @@ function take_frame(frame) {
 
 function take_state(state) {
   page.state = state;
+  if (Number(by_id("timeline").value) >= state.last) chooses_frame = false;
   page.history = page.history.filter(each => each.frame <= state.frame);
   draw_soon();
   show_state();
@@ -1146,6 +1151,14 @@ const events = {
   frame: take_frame,
   words: show_words,
   say: ({ text }) => remark(text),
+  steered(is_steered) {
+    page.hello.steered = is_steered;
+    show_role();
+  },
+  moved() {  // another page has the claim of this one, of which it is a copy
+    page.wants_to_steer = false;
+    lose_claim();
+  },
   end({ text }) {
     page.ended = text;
     show_connection();
@@ -1211,7 +1224,8 @@ function follow_events() {
     };
     source.addEventListener("error", () => {
       if (opened || source.readyState !== EventSource.CLOSED) return end_events(opened ? "lost" : "unreachable");
-      lose_claim();  // the program knows no such claim
+      if (page.writer) lose_claim();  // the program knows no such claim
+      else end_events("unreachable");
     });
   });
 }

@@ -119,12 +119,16 @@ DrawList FrameLoop::list_of(int frame, double time, const FrameRow* row) {
   for (const auto& body : recorders_) pose.forces.push_back(&body->saved_forces());
   pose.row = row;
   pose.earlier = graphed_;
-  if (!dress_) return drawn_->list(world_.scene(), pose, world_.colliders(), threads_);
+  if (!look_) return drawn_->list(world_.scene(), pose, world_.colliders(), threads_);
   SceneDef scene = world_.scene();
-  scene.look.wireframe = dress_->look.wireframe;
-  scene.look.marks = dress_->look.marks;
-  scene.field = dress_->field;
+  scene.look.wireframe = look_->look.wireframe;
+  scene.look.marks = look_->look.marks;
+  scene.field = look_->field;
   return drawn_->list(scene, pose, world_.colliders(), threads_);
+}
+
+void FrameLoop::end_repeats() {
+  for (const auto& body : recorders_) body->end_repeats();
 }
 
 bool FrameLoop::show_again() {
@@ -166,7 +170,7 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
   if (start.checkpoint) {
     go_to(*start.checkpoint, earlier);
   } else {
-    go_on_after(earlier);
+    continue_after(earlier);
   }
   if (!plan.record.empty()) states_.emplace(plan.record, start.record_head, first);
 }
@@ -176,11 +180,11 @@ void FrameLoop::go_to(const WorldState& state, const FrameRows& before) {
   world_.restore(state);
   changes.insert(changes.end(), world_.script().changes().begin(), world_.script().changes().end());
   if (drawn_ && !changes.empty()) drawn_->follow(changes, world_.colliders(), world_.bodies());
-  go_on_after(before);
+  continue_after(before);
 }
 
-// Lets the recorders go on behind these frames.
-void FrameLoop::go_on_after(const FrameRows& before) {
+// Lets the recorders continue after these frames.
+void FrameLoop::continue_after(const FrameRows& before) {
   pairs_.emplace(world_, before);
   graphed_.clear();
   std::vector<BodyRow> last;
@@ -188,20 +192,21 @@ void FrameLoop::go_on_after(const FrameRows& before) {
     if (graphs_) graphed_.push_back(graph_point(row));
     last = row.bodies;
   });
-  for (std::size_t b = 0; b < last.size(); ++b) recorders_[b]->resume(last[b]);
+  for (std::size_t b = 0; b < recorders_.size(); ++b) recorders_[b]->resume(b < last.size() ? last[b] : BodyRow{});
   if (!drawn_ || !drawn_->needs_before()) return;
   last_motion_.clear();
   for (const auto& body : recorders_) last_motion_.push_back(body->present_motion());
 }
 
-void FrameLoop::dress(const std::vector<std::string>& settings) {
+void FrameLoop::change_look(const std::vector<std::string>& settings) {
   const Script script = world_.script().with(settings);
   const bool as_elements = script.scene().look.wireframe;
   std::vector<DrawnBody>& drawn = as_elements ? elements_ : skins_;
   if (drawn.empty())
     drawn = drawn_bodies(world_.bodies(), {UserCache::of_user(), {}}, as_elements ? DrawnAs::elements : DrawnAs::skin);
-  drawn_.emplace(script, world_.bodies(), drawn, world_.colliders(), caption_font());
-  dress_ = script.scene();
+  DrawnFilm film(script, world_.bodies(), drawn, world_.colliders(), caption_font());
+  drawn_.emplace(std::move(film));
+  look_ = script.scene();
   last_motion_.clear();
   if (!drawn_->needs_before()) return;
   for (const auto& body : recorders_) last_motion_.push_back(body->present_motion());

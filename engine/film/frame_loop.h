@@ -46,9 +46,11 @@ class FrameLoop {
 
   // Goes to a state of this world, earlier or later. before: the rows of all frames before it.
   void go_to(const WorldState& state, const FrameRows& before);
-  // Draws with these settings over the scene's from now on: path=value, of the field and the look. The stage is another
-  // one then, on which the target must go on. Throws InputError, and then changes nothing.
-  void dress(const std::vector<std::string>& settings);
+  // Draws with these settings over the scene's from now on: path=value, of the field and the look. The target must then
+  // draw on the new stage. Throws InputError, and then changes nothing.
+  void change_look(const std::vector<std::string>& settings);
+  // Makes steps keep to this run's own budgets of time from now on, wherever those of an earlier run ended.
+  void end_repeats();
   // Puts the list of the world as it is, between two frames.
   bool show_again();
 
@@ -62,7 +64,7 @@ class FrameLoop {
   std::string compare_with_record(int frame);
   void save_outputs(int frame, const FrameRow& row);
   void keep_motion();
-  void go_on_after(const FrameRows& before);
+  void continue_after(const FrameRows& before);
   DrawList list_of(int frame, double time, const FrameRow* row);
 
   const FilmPlan& plan_;
@@ -73,8 +75,8 @@ class FrameLoop {
   StateVerifier* verifier_;                  // compares states for --verify; null without it
   bool compares_session_;                    // whether rows tell if a frame is as a live session has played it
   std::optional<DrawnFilm> drawn_;           // only with pictures
-  std::optional<SceneDef> dress_;            // has the look and the field that dress() has put over the scene's
-  std::vector<DrawnBody> skins_, elements_;  // by body, for dress(); made when they are first wanted
+  std::optional<SceneDef> look_;             // has the look and the field that change_look() has put over the scene's
+  std::vector<DrawnBody> skins_, elements_;  // by body, for change_look(); made when they are first wanted
   std::vector<Positions> last_motion_;  // of the bodies at the end of the last frame, where the pictures need it [m]
   WorldErrors errors_;                  // measures steps where the plan asks for it
   std::vector<std::unique_ptr<BodyRecorder>> recorders_;  // of each body

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "output/files/json_text.h"
 #include "scene/definition/scene_def.h"
 
 namespace supple {
@@ -57,7 +58,7 @@ class Keys {
   void finish() const {
     for (const auto& [key, value] : json_.items()) {
       if (std::ranges::find(asked_, key) == asked_.end())
-        throw InputError(source, fmt::format("{}: this deed has no such key", printable(key)));
+        throw InputError(source, fmt::format("{}: this command has no such key", printable(key)));
     }
   }
 
@@ -94,49 +95,49 @@ void read_show(Keys& keys, Command& command) {
 }
 
 void read_keys(Keys& keys, Command& command) {
-  switch (command.deed) {
-    case Deed::set:
+  switch (command.kind) {
+    case CommandKind::set:
       command.path = keys.text("path", longest_name);
       command.value = keys.text("value", longest_value);
       if (keys.has("over")) command.over = keys.number("over", 0, 3600);
       return;
-    case Deed::speed: command.factor = keys.number("factor", 0.05, 4); return;
-    case Deed::go: command.frame = keys.whole("frame", 0, 1000000); return;
-    case Deed::grab:
-    case Deed::drag: command.at = read_place(keys); return;
-    case Deed::drop:
+    case CommandKind::speed: command.factor = keys.number("factor", 0.05, 4); return;
+    case CommandKind::go: command.frame = keys.whole("frame", 0, 1000000); return;
+    case CommandKind::grab:
+    case CommandKind::drag: command.at = read_place(keys); return;
+    case CommandKind::drop:
       if (keys.has("pin")) command.on = keys.truth("pin");
       return;
-    case Deed::release:
+    case CommandKind::release:
       command.body = keys.text("body", longest_name);
       command.name = keys.text("name", longest_name);
       return;
-    case Deed::orbit: command.at = keys.pair("by", 360); return;
-    case Deed::pan: command.at = keys.pair("by", 10); return;
-    case Deed::zoom: command.factor = keys.number("by", 0.1, 10); return;
-    case Deed::show: read_show(keys, command); return;
-    case Deed::keep_rate: command.on = keys.truth("on"); return;
-    case Deed::pause:
-    case Deed::run:
-    case Deed::step:
-    case Deed::restart:
-    case Deed::home:
-    case Deed::keep_view:
-    case Deed::save: return;
+    case CommandKind::orbit: command.at = keys.pair("by", 360); return;
+    case CommandKind::pan: command.at = keys.pair("by", 10); return;
+    case CommandKind::zoom: command.factor = keys.number("by", 0.1, 10); return;
+    case CommandKind::show: read_show(keys, command); return;
+    case CommandKind::keep_rate: command.on = keys.truth("on"); return;
+    case CommandKind::pause:
+    case CommandKind::run:
+    case CommandKind::step:
+    case CommandKind::restart:
+    case CommandKind::home:
+    case CommandKind::keep_view:
+    case CommandKind::save: return;
   }
 }
 
 }  // namespace
 
 Command read_command(std::string_view text) {
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = json_if_valid<Json>(text);
   if (!json.is_object()) throw InputError(source, "wants a JSON object");
   Keys keys(json);
   const std::string word = keys.text("do", longest_name);
-  const std::optional<Deed> deed = value_named<Deed>(word);
-  if (!deed) throw InputError(source, fmt::format("do: wants {}", word_list(all_names<Deed>())));
+  const std::optional<CommandKind> kind = value_named<CommandKind>(word);
+  if (!kind) throw InputError(source, fmt::format("do: wants {}", word_list(all_names<CommandKind>())));
   Command command;
-  command.deed = *deed;
+  command.kind = *kind;
   read_keys(keys, command);
   keys.finish();
   return command;

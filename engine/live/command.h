@@ -11,7 +11,7 @@
 
 namespace supple {
 
-enum class Deed {
+enum class CommandKind {
   set,        // a value, as a replay changes it
   pause,      // the frames stop
   run,        // they go on
@@ -33,22 +33,22 @@ enum class Deed {
   save,       // the replay of what was done
 };
 template <>
-struct Names<Deed> {
-  static constexpr std::array table = {Name{Deed::set, "set"},         Name{Deed::pause, "pause"},
-                                       Name{Deed::run, "run"},         Name{Deed::step, "step"},
-                                       Name{Deed::speed, "speed"},     Name{Deed::restart, "restart"},
-                                       Name{Deed::go, "go"},           Name{Deed::grab, "grab"},
-                                       Name{Deed::drag, "drag"},       Name{Deed::drop, "drop"},
-                                       Name{Deed::release, "release"}, Name{Deed::orbit, "orbit"},
-                                       Name{Deed::pan, "pan"},         Name{Deed::zoom, "zoom"},
-                                       Name{Deed::home, "home"},       Name{Deed::keep_view, "keep_view"},
-                                       Name{Deed::show, "show"},       Name{Deed::keep_rate, "keep_rate"},
-                                       Name{Deed::save, "save"}};
+struct Names<CommandKind> {
+  static constexpr std::array table = {Name{CommandKind::set, "set"},         Name{CommandKind::pause, "pause"},
+                                       Name{CommandKind::run, "run"},         Name{CommandKind::step, "step"},
+                                       Name{CommandKind::speed, "speed"},     Name{CommandKind::restart, "restart"},
+                                       Name{CommandKind::go, "go"},           Name{CommandKind::grab, "grab"},
+                                       Name{CommandKind::drag, "drag"},       Name{CommandKind::drop, "drop"},
+                                       Name{CommandKind::release, "release"}, Name{CommandKind::orbit, "orbit"},
+                                       Name{CommandKind::pan, "pan"},         Name{CommandKind::zoom, "zoom"},
+                                       Name{CommandKind::home, "home"},       Name{CommandKind::keep_view, "keep_view"},
+                                       Name{CommandKind::show, "show"},       Name{CommandKind::keep_rate, "keep_rate"},
+                                       Name{CommandKind::save, "save"}};
 };
 
-// Holds a deed, and of the other members those that it needs.
+// Holds what is asked for, and of the other members those that this needs.
 struct Command {
-  Deed deed = Deed::pause;
+  CommandKind kind = CommandKind::pause;
   std::string path, value;  // of set: as --set takes them
   double over = 0;          // of set: how long it takes [s]
   double factor = 1;        // of speed and zoom

@@ -14,19 +14,19 @@
 namespace supple {
 namespace {
 
-struct OpenWay {
+struct OpenRoute {
   std::string_view path, method;
-  Door door;
+  Route route;
 };
-constexpr auto ways = std::to_array<OpenWay>({{"", "GET", Door::page},
-                                              {"live.css", "GET", Door::style},
-                                              {"live.js", "GET", Door::script},
-                                              {"icon.svg", "GET", Door::icon},
-                                              {"picture", "GET", Door::picture},
-                                              {"events", "GET", Door::events},
-                                              {"replay", "GET", Door::replay},
-                                              {"claim", "POST", Door::claim},
-                                              {"do", "POST", Door::act}});
+constexpr auto routes = std::to_array<OpenRoute>({{"", "GET", Route::page},
+                                                  {"live.css", "GET", Route::style},
+                                                  {"live.js", "GET", Route::script},
+                                                  {"icon.svg", "GET", Route::icon},
+                                                  {"picture", "GET", Route::picture},
+                                                  {"events", "GET", Route::events},
+                                                  {"replay", "GET", Route::replay},
+                                                  {"claim", "POST", Route::claim},
+                                                  {"do", "POST", Route::act}});
 
 // Compares two texts in a time that tells nothing but their lengths.
 bool are_same_secret(std::string_view a, std::string_view b) {
@@ -55,6 +55,10 @@ Answer refusal_of(int status, const std::string& text) {
   return {status, json_text(nlohmann::ordered_json{{"error", text}})};
 }
 
+Reach reach_of(std::string_view address) {
+  return address == "127.0.0.1" || address == "::1" ? Reach::loopback : Reach::network;
+}
+
 std::string random_token() {
   std::array<unsigned char, 16> bytes{};
   if (getrandom(bytes.data(), bytes.size(), 0) != std::ssize(bytes))
@@ -66,10 +70,11 @@ std::string random_token() {
 
 bool Gate::is_own_host(std::string_view host) const {
   const std::string_view name = name_of_host(host);
-  return name == "localhost" || name == "127.0.0.1" || name == "[::1]" || (listens_to_all_ && is_address(name));
+  return name == "localhost" || name == "127.0.0.1" || name == "[::1]" ||
+         (reach_ == Reach::network && is_address(name));
 }
 
-std::variant<Door, Answer> Gate::admit(const LiveRequest& request) const {
+std::variant<Route, Answer> Gate::admit(const LiveRequest& request) const {
   if (!is_own_host(request.host)) return refusal_of(403, "this is not the name of this host");
   if (!request.origin.empty() && request.origin != fmt::format("http://{}", request.host))
     return refusal_of(403, "the request comes from another page");
@@ -78,22 +83,21 @@ std::variant<Door, Answer> Gate::admit(const LiveRequest& request) const {
   const std::string_view token = path.substr(0, slash).substr(std::min<std::size_t>(1, path.size()));
   if (!path.starts_with('/') || slash == std::string_view::npos || !are_same_secret(token, token_))
     return refusal_of(404, "nothing is here: the address of the page is in the terminal where it was started");
-  const auto way = std::ranges::find(ways, path.substr(slash + 1), &OpenWay::path);
-  if (way == ways.end()) return refusal_of(404, "nothing is here");
-  if (way->method != request.method) return refusal_of(405, fmt::format("wants {}", way->method));
+  const auto found = std::ranges::find(routes, path.substr(slash + 1), &OpenRoute::path);
+  if (found == routes.end()) return refusal_of(404, "nothing is here");
+  if (found->method != request.method) return refusal_of(405, fmt::format("wants {}", found->method));
   std::size_t length = 0;
   const char* end = request.length.data() + request.length.size();
   const auto [read_to, error] = std::from_chars(request.length.data(), end, length);
   const bool is_number = error == std::errc() && read_to == end;
   if (!request.length.empty() && (!is_number || length > most_bytes))
     return refusal_of(413, fmt::format("a request has at most {} bytes", most_bytes));
-  return way->door;
+  return found->route;
 }
 
 namespace {
 
 constexpr std::chrono::seconds grace{5};  // for a page that is loaded again
-constexpr double commands_a_second = 300;
 
 }  // namespace
 
@@ -124,11 +128,10 @@ bool Steering::disconnected(std::string_view key, Clock::time_point now) {
   return connections_ == 0;
 }
 
-bool Steering::allows_command(Clock::time_point now) {
-  const std::lock_guard lock(mutex_);
+bool RateLimit::allows(Clock::time_point now) {
   const std::chrono::duration<double> passed = now - counted_at_;
   counted_at_ = now;
-  allowed_ = std::min(commands_a_second, allowed_ + commands_a_second * std::min(passed.count(), 1.0));
+  allowed_ = std::min(at_once_, allowed_ + a_second_ * std::min(passed.count(), at_once_ / a_second_));
   if (allowed_ < 1) return false;
   allowed_ -= 1;
   return true;

@@ -24,31 +24,45 @@ struct LiveRequest {
 };
 
 // Names what there is to ask for.
-enum class Door { page, style, script, icon, picture, events, claim, act, replay };
+enum class Route { page, style, script, icon, picture, events, claim, act, replay };
+
+enum class Reach { loopback, network };
+// Returns how far an address in numbers can be reached.
+Reach reach_of(std::string_view address);
 
 constexpr std::size_t most_bytes = 4096;  // of a request's body
-
-Answer refusal_of(int status, const std::string& text);
 
 // Makes 128 random bits as 32 digits, from the system's source. Throws RunError where it gives none.
 std::string random_token();
 
 class Gate {
  public:
-  // token: the secret of the URL. listens_to_all: whether the server can be reached from elsewhere, by any numeric
-  // address, and not through the loopback alone.
-  Gate(std::string token, bool listens_to_all) : token_(std::move(token)), listens_to_all_(listens_to_all) {}
+  // token: the secret of the URL. reach: from where the server can be reached.
+  Gate(std::string token, Reach reach) : token_(std::move(token)), reach_(reach) {}
 
   // Returns what the request asks for, or why it is refused. A page elsewhere cannot pass: a name that leads here by a
   // trick of its name server is no name of this host, and its scripts say where they come from.
-  std::variant<Door, Answer> admit(const LiveRequest& request) const;
+  std::variant<Route, Answer> admit(const LiveRequest& request) const;
   const std::string& token() const { return token_; }
 
  private:
   bool is_own_host(std::string_view host) const;
 
   std::string token_;
-  bool listens_to_all_;
+  Reach reach_;
+};
+
+// Counts events, of which so many are allowed in a second, and after a rest as many at once.
+class RateLimit {
+ public:
+  using Clock = std::chrono::steady_clock;
+  RateLimit(double a_second, double at_once) : a_second_(a_second), at_once_(at_once), allowed_(at_once) {}
+  // Counts an event. Returns false where there are too many.
+  bool allows(Clock::time_point now);
+
+ private:
+  double a_second_, at_once_, allowed_;  // the last: as time has added them
+  Clock::time_point counted_at_;
 };
 
 // Knows which page steers. One that has gone is forgotten after a while.
@@ -63,16 +77,12 @@ class Steering {
   void connected(std::string_view key);
   // Returns whether nobody steers any more, unless the page comes back.
   bool disconnected(std::string_view key, Clock::time_point now);
-  // Counts a command. Returns false where there are too many in a short time.
-  bool allows_command(Clock::time_point now);
 
  private:
   mutable std::mutex mutex_;
   std::string key_;  // empty: nobody steers
   int connections_ = 0;
   Clock::time_point alone_since_;  // without a connection
-  double allowed_ = 0;             // commands, as time has added them
-  Clock::time_point counted_at_;
 };
 
 }  // namespace supple

@@ -43,6 +43,8 @@ void LiveView::pan(const Eigen::Vector2d& shares) {
   const double height = 2 * (camera.eye - camera.target).norm() * std::tan(0.5 * degree * camera.fov_deg);
   const auto [right, up] = axes_of(camera);
   const Vec3 move = -height * (shares.x() * right + shares.y() * up);
+  constexpr double furthest = 1e4;  // [m]
+  if (!((camera.target + move).norm() < furthest)) return;
   camera.eye += move;
   camera.target += move;
 }

@@ -7,8 +7,10 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "live/command.h"
@@ -20,50 +22,72 @@ struct Answer {
   int status = 200;
   std::string body;
 };
-using TakesAnswer = std::function<void(Answer)>;
 
-struct Letter {
+// Returns an answer that says why a request is refused.
+Answer refusal_of(int status, const std::string& text);
+
+// Answers a command once, from any thread. A command that is dropped is answered, too.
+class Reply {
+ public:
+  using Take = std::function<void(Answer)>;
+  explicit Reply(Take take) : take_(std::move(take)) {}
+  ~Reply() { give(refusal_of(503, "the program has ended, or could not do this")); }
+  Reply(const Reply&) = delete;
+  Reply& operator=(const Reply&) = delete;
+  void give(Answer answer) {
+    if (const Take take = std::exchange(take_, nullptr)) take(std::move(answer));
+  }
+
+ private:
+  Take take_;
+};
+
+struct PostedCommand {
   Command command;
   std::uint64_t input = 0;  // number of the command, by which a picture tells that it shows its effect
-  TakesAnswer answer;       // to be called once, by any thread
+  std::shared_ptr<Reply> reply;
 };
+
+enum class Posted { taken, full, closed };
 
 class Mailbox {
  public:
-  // Returns false where too many letters wait, or nobody will take them; the letter is then not answered.
-  bool post(Letter letter) {
+  // must: whether the command is taken although many wait.
+  Posted post(PostedCommand command, bool must = false) {
     const std::lock_guard lock(mutex_);
-    if (closed_ || letters_.size() >= most_letters) return false;
-    letters_.push_back(std::move(letter));
+    if (closed_) return Posted::closed;
+    if (commands_.size() >= most_commands && !must) return Posted::full;
+    commands_.push_back(std::move(command));
     arrived_.notify_one();
-    return true;
+    return Posted::taken;
   }
-  // Returns all letters that wait, in their order.
-  std::vector<Letter> take() {
+  // Returns all commands that wait, in their order.
+  std::vector<PostedCommand> take() {
     const std::lock_guard lock(mutex_);
-    std::vector<Letter> taken(std::make_move_iterator(letters_.begin()), std::make_move_iterator(letters_.end()));
-    letters_.clear();
+    std::vector<PostedCommand> taken(std::make_move_iterator(commands_.begin()),
+                                     std::make_move_iterator(commands_.end()));
+    commands_.clear();
     return taken;
   }
-  // Waits for a letter, at most until this time.
+  // Waits for a command, at most until this time.
   void wait_until(std::chrono::steady_clock::time_point time) {
     std::unique_lock lock(mutex_);
-    arrived_.wait_until(lock, time, [this] { return !letters_.empty(); });
+    arrived_.wait_until(lock, time, [this] { return !commands_.empty(); });
   }
-  // Returns all letters that wait, after which no more are accepted.
-  std::vector<Letter> close() {
+  // Accepts no more commands, and drops those that wait.
+  void close() {
     {
       const std::lock_guard lock(mutex_);
       closed_ = true;
     }
-    return take();
+    take();
   }
 
  private:
-  static constexpr std::size_t most_letters = 64;
+  static constexpr std::size_t most_commands = 64;
   std::mutex mutex_;
   std::condition_variable arrived_;
-  std::deque<Letter> letters_;
+  std::deque<PostedCommand> commands_;
   bool closed_ = false;
 };
 

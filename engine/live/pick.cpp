@@ -72,10 +72,10 @@ Found nearest_beside(const World& world, const Ray& ray, double height_over_dist
   return found;
 }
 
-// Returns the stiffness of all springs together [N/m], which is that of a hand: several times that with which an elastic
-// half space resists a disc of this radius (some 4 mu r for a soft one: Johnson, Contact Mechanics, 1985, section 3.4),
-// so that a soft ear comes along; but at most so much that the body's weight would hang a fiftieth of its size below the
-// pointer, so that nobody pulls a stiff body apart.
+// Returns the stiffness of all springs together [N/m], which is that of a hand: several times that with which an
+// elastic half space resists a disc of this radius (some 4 mu r for a soft one: Johnson, Contact Mechanics, 1985,
+// section 3.4), so that a soft ear comes along; but at most so much that the body's weight would hang a fiftieth of its
+// size below the pointer, so that nobody pulls a stiff body apart.
 double stiffness_of_grip(const World& world, std::size_t b, double radius) {
   const Body& body = world.bodies()[b];
   const Model& model = world.body(b).model();

@@ -1,19 +1,15 @@
 #include "live/server.h"
 
-#include <arpa/inet.h>
 #include <fmt/core.h>
-#include <microhttpd.h>
-#include <netinet/in.h>
+#include <sys/socket.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <charconv>
 #include <condition_variable>
 #include <fstream>
 #include <list>
 #include <mutex>
-#include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <thread>
 
@@ -21,6 +17,7 @@
 #include "base/signals.h"
 #include "base/trace.h"
 #include "live/gate.h"
+#include "live/response.h"
 
 namespace supple {
 namespace {
@@ -30,40 +27,10 @@ using Clock = std::chrono::steady_clock;
 constexpr unsigned most_connections = 600;
 constexpr unsigned silence_s = 10;  // after which a connection that makes no progress is closed
 constexpr std::size_t connection_memory = 16384;
+constexpr std::chrono::seconds patience{5};       // with a connection that has not asked for anything that it may have
 constexpr std::chrono::seconds longest_wait{10};  // for a picture
-constexpr std::chrono::seconds between_beats{1};  // of the stream of events, which find out readers that have gone
+constexpr std::chrono::seconds between_beats{1};  // of the streams of events, by which readers that have gone are found
 constexpr std::size_t piece_of_stream = 8192;
-
-// Nothing is taken from elsewhere, no other page shows this one, and none learns its address.
-constexpr std::array<std::pair<const char*, const char*>, 6> headers = {{
-    {"Content-Security-Policy",
-     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; "
-     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
-    {"Cross-Origin-Resource-Policy", "same-origin"},
-    {"Cross-Origin-Opener-Policy", "same-origin"},
-    {"Referrer-Policy", "no-referrer"},
-    {"X-Content-Type-Options", "nosniff"},
-    {"Cache-Control", "no-store"},
-}};
-
-struct ResponseDeleter {
-  void operator()(MHD_Response* response) const { MHD_destroy_response(response); }
-};
-using Response = std::unique_ptr<MHD_Response, ResponseDeleter>;  // connections that send it have shares of their own
-
-Response with_headers(MHD_Response* response, const char* type) {
-  for (const auto& [name, value] : headers) MHD_add_response_header(response, name, value);
-  MHD_add_response_header(response, "Content-Type", type);
-  return Response(response);
-}
-
-Response response_of(const void* bytes, std::size_t size, const char* type) {
-  return with_headers(MHD_create_response_from_buffer(size, const_cast<void*>(bytes), MHD_RESPMEM_MUST_COPY), type);
-}
-
-Response response_of(const std::string& text, const char* type = "application/json") {
-  return response_of(text.data(), text.size(), type);
-}
 
 std::string text_of_file(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -90,15 +57,15 @@ LiveRequest request_of(MHD_Connection* connection, const char* url, const char* 
   return request;
 }
 
-// Holds a connection that may be suspended, until something comes for it.
-struct Waiting {
+// Represents a connection that may be suspended, until something comes for it.
+struct Suspendable {
   MHD_Connection* connection = nullptr;
   bool suspended = false;
 };
 
-// Represents one request from its first header to its last byte.
-struct Visit : Waiting {
-  Door door = Door::page;
+// Represents one request and its response.
+struct Exchange : Suspendable {
+  Route route = Route::page;
   std::string writer, body;
   std::uint64_t after = 0;
   Clock::time_point until;  // a picture comes
@@ -106,65 +73,79 @@ struct Visit : Waiting {
   std::optional<Answer> answer;
 };
 
-// Represents a stream of events to one page.
-struct Reader : Waiting {
-  std::string writer;  // its key; empty for a page that watches
-  std::uint64_t seen = 0;
-  std::string text;      // that is being sent
-  std::size_t sent = 0;  // of it
-  bool wants_beat = false;
-};
+bool is_of_view(const Command& command) {
+  return command.kind == CommandKind::orbit || command.kind == CommandKind::pan || command.kind == CommandKind::zoom ||
+         command.kind == CommandKind::home;
+}
+
+void apply(const Command& command, LiveView& view) {
+  if (command.kind == CommandKind::orbit) view.orbit(command.at);
+  if (command.kind == CommandKind::pan) view.pan(command.at);
+  if (command.kind == CommandKind::zoom) view.zoom(command.factor);
+  if (command.kind == CommandKind::home) view.home();
+}
 
 }  // namespace
 
-class LiveServer::Hall {
+class LiveServer::Connections {
  public:
-  Hall(LiveDesk& desk, const LiveAddress& address, const std::filesystem::path& files);
-  ~Hall();
-  Hall(const Hall&) = delete;
-  Hall& operator=(const Hall&) = delete;
+  Connections(LiveDesk& desk, const LiveAddress& address, const std::filesystem::path& files);
+  ~Connections();
+  Connections(const Connections&) = delete;
+  Connections& operator=(const Connections&) = delete;
 
   std::string url;
 
  private:
-  static MHD_Result handle(void* self, MHD_Connection* connection, const char* url, const char* method,
-                           const char* version, const char* data, std::size_t* size, void** visit);
-  static void forget(void* self, MHD_Connection* connection, void** visit, MHD_RequestTerminationCode reason);
-  static ssize_t read_events(void* reader, std::uint64_t position, char* buffer, std::size_t size);
-  static void close_reader(void* reader);
-
-  MHD_Result welcome(MHD_Connection* connection, const LiveRequest& request, void** visit);
-  MHD_Result serve(MHD_Connection* connection, const std::shared_ptr<Visit>& visit);
-  MHD_Result serve_picture(MHD_Connection* connection, const std::shared_ptr<Visit>& visit);
-  MHD_Result serve_command(MHD_Connection* connection, const std::shared_ptr<Visit>& visit);
-  MHD_Result serve_events(MHD_Connection* connection, const Visit& visit);
-  std::optional<Answer> command_of(Visit& visit, Command& command);
-  void change_view(const Command& command, std::uint64_t input);
-  void suspend(Waiting& waiting) {
-    waiting.suspended = true;
-    MHD_suspend_connection(waiting.connection);
-  }
-  void resume(Waiting& waiting) {
-    if (std::exchange(waiting.suspended, false)) MHD_resume_connection(waiting.connection);
-  }
-  void take_picture();
-  void wake_readers();
-  void beat();
-  void listen(const LiveAddress& address);
-
-  // Ties a reader to the hall, for the callbacks of its response.
-  struct Seat {
-    Hall* hall;
-    Reader reader;
+  // Represents the stream of events to one page.
+  struct EventStream : Suspendable {
+    Connections* owner = nullptr;
+    std::string writer;  // its key; empty for a page that watches
+    std::uint64_t seen = 0;
+    std::string text;      // that is being sent
+    std::size_t sent = 0;  // of it
+    bool wants_beat = false, ends = false;
   };
+  // Describes a connection that has not asked for anything yet that it may have.
+  struct Stranger {
+    MHD_Connection* connection;
+    int socket;
+    Clock::time_point since;
+  };
+
+  // These are called by the library.
+  static MHD_Result handle(void* self, MHD_Connection* connection, const char* url, const char* method,
+                           const char* version, const char* data, std::size_t* size, void** exchange);
+  static void forget(void* self, MHD_Connection* connection, void** exchange, MHD_RequestTerminationCode reason);
+  static void notice(void* self, MHD_Connection* connection, void** socket, MHD_ConnectionNotificationCode what);
+  static ssize_t read_events(void* stream, std::uint64_t position, char* buffer, std::size_t size);
+  static void close_stream(void* stream);
+
+  MHD_Result begin_exchange(MHD_Connection* connection, const LiveRequest& request, void** exchange);
+  MHD_Result serve(MHD_Connection* connection, const std::shared_ptr<Exchange>& exchange);
+  MHD_Result serve_claim(MHD_Connection* connection);
+  MHD_Result serve_picture(MHD_Connection* connection, const std::shared_ptr<Exchange>& exchange);
+  MHD_Result serve_command(MHD_Connection* connection, const std::shared_ptr<Exchange>& exchange);
+  MHD_Result serve_events(MHD_Connection* connection, const Exchange& exchange);
+  std::optional<Answer> read_command_of(const Exchange& exchange, Command& command);
+  void end_other_streams(const std::string& writer);
+  void suspend(Suspendable& one);
+  void resume(Suspendable& one);
+  void take_picture();
+  void wake_streams();
+  void tell_whether_steered(bool is_steered);
+  void beat();
 
   LiveDesk& desk_;
   Gate gate_;
   Steering steering_;
+  RateLimit commands_{300, 300}, replays_{1, 5};
   std::string page_, style_, script_, icon_;
-  std::mutex mutex_;  // guards all below, and what visits and readers hold
-  std::list<std::shared_ptr<Visit>> for_picture_;
-  std::list<Seat*> seats_;
+  std::mutex mutex_;  // guards all below, and what exchanges and streams hold
+  std::list<std::shared_ptr<Exchange>> for_picture_;
+  std::set<Suspendable*> suspended_;
+  std::list<EventStream*> streams_;
+  std::list<Stranger> strangers_;
   bool closes_ = false;
   std::uint64_t picture_number_ = 0;  // of `picture_`
   Response picture_;
@@ -173,137 +154,134 @@ class LiveServer::Hall {
   std::thread beating_;
 };
 
-namespace {
-
-MHD_Result send(MHD_Connection* connection, int status, const Response& response) {
-  return MHD_queue_response(connection, static_cast<unsigned>(status), response.get());
-}
-MHD_Result send(MHD_Connection* connection, const Answer& answer) {
-  return send(connection, answer.status, response_of(answer.body));
-}
-
-}  // namespace
-
-LiveServer::Hall::Hall(LiveDesk& desk, const LiveAddress& address, const std::filesystem::path& files)
+LiveServer::Connections::Connections(LiveDesk& desk, const LiveAddress& address, const std::filesystem::path& files)
     : desk_(desk),
-      gate_(random_token(), address.address != "127.0.0.1" && address.address != "::1"),
+      gate_(random_token(), reach_of(address.address)),
       page_(text_of_file(files / "live.html")),
       style_(text_of_file(files / "live.css")),
       script_(text_of_file(files / "live.js")),
       icon_(text_of_file(files / "icon.svg")) {
   const BlockedSignals meanwhile;  // the thread that makes the frames takes signals
-  listen(address);
+  const ListeningSocket socket = listen_to(address);
+  url = fmt::format("http://{}/{}/", socket.host, gate_.token());
+  daemon_ = MHD_start_daemon(MHD_USE_EPOLL | MHD_USE_INTERNAL_POLLING_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0, nullptr,
+                             nullptr, &Connections::handle, this, MHD_OPTION_LISTEN_SOCKET, socket.descriptor,
+                             MHD_OPTION_CONNECTION_LIMIT, most_connections, MHD_OPTION_CONNECTION_TIMEOUT, silence_s,
+                             MHD_OPTION_CONNECTION_MEMORY_LIMIT, connection_memory, MHD_OPTION_NOTIFY_COMPLETED,
+                             &Connections::forget, this, MHD_OPTION_NOTIFY_CONNECTION, &Connections::notice, this,
+                             MHD_OPTION_END);
+  if (daemon_ == nullptr) throw RunError("the server of the live page could not be started");
+  tell_whether_steered(false);
   desk_.pictures.on_picture([this] { take_picture(); });
-  desk_.events.on_event([this] { wake_readers(); });
+  desk_.events.on_event([this] { wake_streams(); });
   beating_ = std::thread([this] {
     name_thread("live page");
     beat();
   });
 }
 
-void LiveServer::Hall::listen(const LiveAddress& address) {
-  sockaddr_storage storage{};
-  const bool is_v6 = address.address.find(':') != std::string::npos;
-  auto* v4 = reinterpret_cast<sockaddr_in*>(&storage);
-  auto* v6 = reinterpret_cast<sockaddr_in6*>(&storage);
-  const std::string place = fmt::format("--listen {}", address.address);
-  if (is_v6) {
-    v6->sin6_family = AF_INET6;
-    v6->sin6_port = htons(static_cast<std::uint16_t>(address.port));
-  } else {
-    v4->sin_family = AF_INET;
-    v4->sin_port = htons(static_cast<std::uint16_t>(address.port));
-  }
-  void* to = is_v6 ? static_cast<void*>(&v6->sin6_addr) : &v4->sin_addr;
-  if (inet_pton(is_v6 ? AF_INET6 : AF_INET, address.address.c_str(), to) != 1)
-    throw InputError(place, "wants an address in numbers, such as 127.0.0.1 or 0.0.0.0");
-  const unsigned flags = MHD_USE_EPOLL | MHD_USE_INTERNAL_POLLING_THREAD | MHD_ALLOW_SUSPEND_RESUME |
-                         (is_v6 ? static_cast<unsigned>(MHD_USE_IPv6) : 0U);
-  daemon_ = MHD_start_daemon(flags, 0, nullptr, nullptr, &Hall::handle, this, MHD_OPTION_SOCK_ADDR,
-                             reinterpret_cast<sockaddr*>(&storage), MHD_OPTION_CONNECTION_LIMIT, most_connections,
-                             MHD_OPTION_CONNECTION_TIMEOUT, silence_s, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
-                             connection_memory, MHD_OPTION_NOTIFY_COMPLETED, &Hall::forget, this, MHD_OPTION_END);
-  if (daemon_ == nullptr)
-    throw InputError(place, fmt::format("cannot be listened to on port {}: another program may use it", address.port));
-  const MHD_DaemonInfo* info = MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_BIND_PORT);
-  const std::string host = is_v6 ? fmt::format("[{}]", address.address) : address.address;
-  url = fmt::format("http://{}:{}/{}/", host, info->port, gate_.token());
-}
-
-LiveServer::Hall::~Hall() {
+LiveServer::Connections::~Connections() {
   desk_.pictures.on_picture(nullptr);
   desk_.events.on_event(nullptr);
   {
     const std::lock_guard lock(mutex_);
     closes_ = true;
-    for (const std::shared_ptr<Visit>& visit : for_picture_) resume(*visit);
-    for_picture_.clear();
-    for (Seat* seat : seats_) resume(seat->reader);
+    while (!suspended_.empty()) resume(**suspended_.begin());  // the daemon cannot stop while one is
     beats_.notify_one();
   }
   beating_.join();
   MHD_stop_daemon(daemon_);
 }
 
-// Is called by the library for each part of a request: its head, pieces of its body, its end, and when it goes on after
-// it was suspended.
-MHD_Result LiveServer::Hall::handle(void* self, MHD_Connection* connection, const char* url, const char* method,
-                                    const char*, const char* data, std::size_t* size, void** state) {
-  auto& hall = *static_cast<Hall*>(self);
+void LiveServer::Connections::suspend(Suspendable& one) {
+  one.suspended = true;
+  suspended_.insert(&one);
+  MHD_suspend_connection(one.connection);
+}
+
+void LiveServer::Connections::resume(Suspendable& one) {
+  if (!std::exchange(one.suspended, false)) return;
+  suspended_.erase(&one);
+  MHD_resume_connection(one.connection);
+}
+
+// Is called for each part of a request: its head, pieces of its body, its end, and when it continues after it was
+// suspended.
+MHD_Result LiveServer::Connections::handle(void* self, MHD_Connection* connection, const char* url, const char* method,
+                                           const char*, const char* data, std::size_t* size, void** state) {
+  auto& own = *static_cast<Connections*>(self);
   try {
-    if (*state == nullptr) return hall.welcome(connection, request_of(connection, url, method), state);
-    const auto& visit = *static_cast<std::shared_ptr<Visit>*>(*state);
+    if (*state == nullptr) return own.begin_exchange(connection, request_of(connection, url, method), state);
+    const auto& exchange = *static_cast<std::shared_ptr<Exchange>*>(*state);
     if (*size > 0) {
-      if (visit->body.size() + *size > most_bytes) return MHD_NO;  // more than was announced
-      visit->body.append(data, *size);
+      if (exchange->body.size() + *size > most_bytes) return MHD_NO;  // more than was announced
+      exchange->body.append(data, *size);
       *size = 0;
       return MHD_YES;
     }
-    return hall.serve(connection, visit);
+    return own.serve(connection, exchange);
   } catch (const std::exception&) {
     return MHD_NO;  // without memory the connection is closed
   }
 }
 
-MHD_Result LiveServer::Hall::welcome(MHD_Connection* connection, const LiveRequest& request, void** state) {
-  const std::variant<Door, Answer> admitted = gate_.admit(request);
+MHD_Result LiveServer::Connections::begin_exchange(MHD_Connection* connection, const LiveRequest& request,
+                                                   void** state) {
+  const std::variant<Route, Answer> admitted = gate_.admit(request);
   if (const Answer* refusal = std::get_if<Answer>(&admitted)) return send(connection, *refusal);
-  auto visit = std::make_shared<Visit>();
-  visit->connection = connection;
-  visit->door = std::get<Door>(admitted);
-  visit->writer = request.writer;
-  std::from_chars(request.after.data(), request.after.data() + request.after.size(), visit->after);
-  visit->until = Clock::now() + longest_wait;
-  *state = new std::shared_ptr<Visit>(std::move(visit));  // forget() frees it
+  auto exchange = std::make_shared<Exchange>();
+  exchange->connection = connection;
+  exchange->route = std::get<Route>(admitted);
+  exchange->writer = request.writer;
+  std::from_chars(request.after.data(), request.after.data() + request.after.size(), exchange->after);
+  exchange->until = Clock::now() + longest_wait;
+  *state = new std::shared_ptr<Exchange>(std::move(exchange));  // forget() frees it
+  const std::lock_guard lock(mutex_);
+  std::erase_if(strangers_, [connection](const Stranger& one) { return one.connection == connection; });
   return MHD_YES;
 }
 
-void LiveServer::Hall::forget(void*, MHD_Connection*, void** state, MHD_RequestTerminationCode) {
-  delete static_cast<std::shared_ptr<Visit>*>(*state);
+void LiveServer::Connections::forget(void*, MHD_Connection*, void** state, MHD_RequestTerminationCode) {
+  delete static_cast<std::shared_ptr<Exchange>*>(*state);
   *state = nullptr;
 }
 
-MHD_Result LiveServer::Hall::serve(MHD_Connection* connection, const std::shared_ptr<Visit>& visit) {
-  switch (visit->door) {
-    case Door::page: return send(connection, 200, response_of(page_, "text/html; charset=utf-8"));
-    case Door::style: return send(connection, 200, response_of(style_, "text/css; charset=utf-8"));
-    case Door::script: return send(connection, 200, response_of(script_, "text/javascript; charset=utf-8"));
-    case Door::icon: return send(connection, 200, response_of(icon_, "image/svg+xml"));
-    case Door::claim: {
-      const std::optional<std::string> key = steering_.claim(Clock::now());
-      if (!key) return send(connection, refusal_of(409, "somebody else steers"));
-      return send(connection, {200, fmt::format("{{\"writer\":\"{}\"}}", *key)});
-    }
-    case Door::picture: return serve_picture(connection, visit);
-    case Door::events: return serve_events(connection, *visit);
-    case Door::replay:
-    case Door::act: return serve_command(connection, visit);
+// Is called when a connection begins, and before its socket is closed.
+void LiveServer::Connections::notice(void* self, MHD_Connection* connection, void**,
+                                     MHD_ConnectionNotificationCode what) {
+  auto& own = *static_cast<Connections*>(self);
+  const std::lock_guard lock(own.mutex_);
+  if (what == MHD_CONNECTION_NOTIFY_STARTED) {
+    const MHD_ConnectionInfo* info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+    own.strangers_.push_back({connection, info->connect_fd, Clock::now()});
+  } else {
+    std::erase_if(own.strangers_, [connection](const Stranger& one) { return one.connection == connection; });
+  }
+}
+
+MHD_Result LiveServer::Connections::serve(MHD_Connection* connection, const std::shared_ptr<Exchange>& exchange) {
+  switch (exchange->route) {
+    case Route::page: return send(connection, 200, response_of(page_, "text/html; charset=utf-8"));
+    case Route::style: return send(connection, 200, response_of(style_, "text/css; charset=utf-8"));
+    case Route::script: return send(connection, 200, response_of(script_, "text/javascript; charset=utf-8"));
+    case Route::icon: return send(connection, 200, response_of(icon_, "image/svg+xml"));
+    case Route::claim: return serve_claim(connection);
+    case Route::picture: return serve_picture(connection, exchange);
+    case Route::events: return serve_events(connection, *exchange);
+    case Route::replay:
+    case Route::act: return serve_command(connection, exchange);
   }
   return MHD_NO;
 }
 
-// Makes the response of a new picture, which all who wait for it share, and lets them go on.
-void LiveServer::Hall::take_picture() {
+MHD_Result LiveServer::Connections::serve_claim(MHD_Connection* connection) {
+  const std::optional<std::string> key = steering_.claim(Clock::now());
+  if (!key) return send(connection, refusal_of(409, "somebody else steers"));
+  return send(connection, {200, fmt::format("{{\"writer\":\"{}\"}}", *key)});
+}
+
+// Makes the response of a new picture, which all who wait for it share, and resumes them.
+void LiveServer::Connections::take_picture() {
   const std::shared_ptr<const LivePicture> newest = desk_.pictures.newest();
   Response response = response_of(newest->jpeg.data(), newest->jpeg.size(), "image/jpeg");
   MHD_add_response_header(response.get(), "X-Picture", fmt::format("{}", newest->number).c_str());
@@ -312,149 +290,173 @@ void LiveServer::Hall::take_picture() {
   const std::lock_guard lock(mutex_);
   picture_ = std::move(response);
   picture_number_ = newest->number;
-  for (const std::shared_ptr<Visit>& visit : for_picture_) resume(*visit);
+  for (const std::shared_ptr<Exchange>& exchange : for_picture_) resume(*exchange);
   for_picture_.clear();
 }
 
-MHD_Result LiveServer::Hall::serve_picture(MHD_Connection* connection, const std::shared_ptr<Visit>& visit) {
+MHD_Result LiveServer::Connections::serve_picture(MHD_Connection* connection,
+                                                  const std::shared_ptr<Exchange>& exchange) {
   const std::lock_guard lock(mutex_);
-  if (picture_ && picture_number_ > visit->after) return MHD_queue_response(connection, 200, picture_.get());
-  if (closes_ || Clock::now() >= visit->until) return send(connection, 204, response_of(""));
-  for_picture_.push_back(visit);
-  suspend(*visit);
+  if (picture_ && picture_number_ > exchange->after) return send(connection, 200, picture_);
+  if (closes_ || Clock::now() >= exchange->until) return send(connection, 204, response_of(""));
+  for_picture_.push_back(exchange);
+  suspend(*exchange);
   return MHD_YES;
 }
 
 // Reads the command of a request. Returns why it is refused; nothing where it is not.
-std::optional<Answer> LiveServer::Hall::command_of(Visit& visit, Command& command) {
-  if (visit.door == Door::replay) {
-    command.deed = Deed::save;
-  } else if (!steering_.is_writer(visit.writer)) {
-    return refusal_of(403, "this page does not steer");
+std::optional<Answer> LiveServer::Connections::read_command_of(const Exchange& exchange, Command& command) {
+  if (exchange.route == Route::replay) {
+    command.kind = CommandKind::save;
+    if (replays_.allows(Clock::now())) return std::nullopt;
+    return refusal_of(429, "the replay was asked for too often in a short time");
   }
-  if (!steering_.allows_command(Clock::now())) return refusal_of(429, "too many commands in a short time");
-  if (visit.door == Door::replay) return std::nullopt;
+  if (!steering_.is_writer(exchange.writer)) return refusal_of(403, "this page does not steer");
+  if (!commands_.allows(Clock::now())) return refusal_of(429, "too many commands in a short time");
   try {
-    command = read_command(visit.body);
+    command = read_command(exchange.body);
   } catch (const InputError& error) {
     return refusal_of(422, error.problems().front().message);
   }
-  if (command.deed == Deed::save) return refusal_of(422, "do: the replay has its own address");
   return std::nullopt;
 }
 
-// Changes the camera without waiting for a frame.
-void LiveServer::Hall::change_view(const Command& command, std::uint64_t input) {
-  desk_.pictures.change_view(
-      [&command](LiveView& view) {
-        if (command.deed == Deed::orbit) view.orbit(command.at);
-        if (command.deed == Deed::pan) view.pan(command.at);
-        if (command.deed == Deed::zoom) view.zoom(command.factor);
-        if (command.deed == Deed::home) view.home();
-      },
-      input);
-}
-
-MHD_Result LiveServer::Hall::serve_command(MHD_Connection* connection, const std::shared_ptr<Visit>& visit) {
-  if (visit->is_posted) {
+MHD_Result LiveServer::Connections::serve_command(MHD_Connection* connection,
+                                                  const std::shared_ptr<Exchange>& exchange) {
+  if (exchange->is_posted) {
     const std::lock_guard lock(mutex_);
-    return send(connection, visit->answer.value_or(refusal_of(503, "the program has ended")));
+    return send(connection, exchange->answer.value_or(refusal_of(503, "the program has ended")));
   }
   Command command;
-  if (const std::optional<Answer> refusal = command_of(*visit, command)) return send(connection, *refusal);
+  if (const std::optional<Answer> refusal = read_command_of(*exchange, command)) return send(connection, *refusal);
   const std::uint64_t input = ++desk_.inputs;
-  const bool is_view = command.deed == Deed::orbit || command.deed == Deed::pan || command.deed == Deed::zoom ||
-                       command.deed == Deed::home;
-  if (is_view) {
-    change_view(command, input);
+  if (is_of_view(command)) {  // the camera does not wait for a frame
+    desk_.pictures.change_view([&command](LiveView& view) { apply(command, view); }, input);
     return send(connection, {200, fmt::format("{{\"input\":{}}}", input)});
   }
-  visit->is_posted = true;
-  suspend(*visit);
-  const auto take = [this, visit](Answer answer) {
+  exchange->is_posted = true;
+  const auto take = [this, exchange](Answer answer) {
     const std::lock_guard lock(mutex_);
-    visit->answer = std::move(answer);
-    resume(*visit);
+    exchange->answer = std::move(answer);
+    resume(*exchange);
   };
-  if (!desk_.mailbox.post({std::move(command), input, take})) take(refusal_of(429, "too many commands wait"));
+  {
+    const std::lock_guard lock(mutex_);
+    suspend(*exchange);
+  }
+  const auto reply = std::make_shared<Reply>(take);
+  if (desk_.mailbox.post({std::move(command), input, reply}) == Posted::full)
+    reply->give(refusal_of(429, "too many commands wait"));
   return MHD_YES;
 }
 
-MHD_Result LiveServer::Hall::serve_events(MHD_Connection* connection, const Visit& visit) {
-  const bool steers = !visit.writer.empty();
-  if (steers && !steering_.is_writer(visit.writer))
+MHD_Result LiveServer::Connections::serve_events(MHD_Connection* connection, const Exchange& exchange) {
+  const bool steers = !exchange.writer.empty();
+  if (steers && !steering_.is_writer(exchange.writer))
     return send(connection, refusal_of(403, "this page does not steer"));
-  auto seat = std::make_unique<Seat>(Seat{this, {}});
-  seat->reader.connection = connection;
-  seat->reader.writer = visit.writer;
+  auto stream = std::make_unique<EventStream>();
+  stream->connection = connection;
+  stream->owner = this;
+  stream->writer = exchange.writer;
   const Response response =
-      with_headers(MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, piece_of_stream, &Hall::read_events, seat.get(),
-                                                     &Hall::close_reader),
+      with_headers(MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, piece_of_stream, &Connections::read_events,
+                                                     stream.get(), &Connections::close_stream),
                    "text/event-stream");
-  if (steers) steering_.connected(visit.writer);
+  if (steers) {
+    steering_.connected(exchange.writer);
+    tell_whether_steered(true);
+  }
   const std::lock_guard lock(mutex_);
-  seats_.push_back(seat.release());  // close_reader() frees it
+  if (steers) end_other_streams(exchange.writer);
+  streams_.push_back(stream.release());  // close_stream() frees it
   return send(connection, 200, response);
 }
 
-// Gives the library the next piece of a stream of events, or lets the connection wait for one.
-ssize_t LiveServer::Hall::read_events(void* place, std::uint64_t, char* buffer, std::size_t size) {
-  auto& [hall, reader] = *static_cast<Seat*>(place);
-  const std::lock_guard lock(hall->mutex_);
-  if (hall->closes_) return MHD_CONTENT_READER_END_OF_STREAM;
-  if (reader.sent == reader.text.size()) {
-    reader.text = hall->desk_.events.text_after(reader.seen, !reader.writer.empty());
-    reader.sent = 0;
-    if (std::exchange(reader.wants_beat, false) && reader.text.empty()) reader.text = ":\n\n";
+// Ends the streams of other pages that have the key of this one: copies of it steer no more.
+void LiveServer::Connections::end_other_streams(const std::string& writer) {
+  for (EventStream* stream : streams_) {
+    if (stream->writer != writer) continue;
+    stream->text = stream->text.substr(stream->sent) + event_text("moved", "{}");
+    stream->sent = 0;
+    stream->ends = true;
+    resume(*stream);
   }
-  if (reader.text.empty()) {
-    hall->suspend(reader);
+}
+
+// Gives the library the next piece of a stream of events, or lets the connection wait for one.
+ssize_t LiveServer::Connections::read_events(void* place, std::uint64_t, char* buffer, std::size_t size) try {
+  auto& stream = *static_cast<EventStream*>(place);
+  Connections& own = *stream.owner;
+  const std::lock_guard lock(own.mutex_);
+  if (stream.sent == stream.text.size()) {
+    stream.text = stream.ends ? "" : own.desk_.events.text_after(stream.seen, !stream.writer.empty());
+    stream.sent = 0;
+    if (std::exchange(stream.wants_beat, false) && stream.text.empty()) stream.text = ":\n\n";
+    if (stream.text.empty() || stream.text == ":\n\n") {
+      if (own.closes_ || stream.ends) return MHD_CONTENT_READER_END_OF_STREAM;
+    }
+  }
+  if (stream.text.empty()) {
+    own.suspend(stream);
     return 0;
   }
-  const std::size_t count = std::min(size, reader.text.size() - reader.sent);
-  std::copy_n(reader.text.data() + reader.sent, count, buffer);
-  reader.sent += count;
+  const std::size_t count = std::min(size, stream.text.size() - stream.sent);
+  std::copy_n(stream.text.data() + stream.sent, count, buffer);
+  stream.sent += count;
   return static_cast<ssize_t>(count);
+} catch (const std::exception&) {
+  return MHD_CONTENT_READER_END_WITH_ERROR;
 }
 
-void LiveServer::Hall::close_reader(void* place) {
-  const std::unique_ptr<Seat> seat(static_cast<Seat*>(place));
-  Hall& hall = *seat->hall;
+void LiveServer::Connections::close_stream(void* place) {
+  const std::unique_ptr<EventStream> stream(static_cast<EventStream*>(place));
+  Connections& own = *stream->owner;
   {
-    const std::lock_guard lock(hall.mutex_);
-    hall.seats_.remove(seat.get());
+    const std::lock_guard lock(own.mutex_);
+    own.streams_.remove(stream.get());
+    own.suspended_.erase(stream.get());
   }
-  const std::string& writer = seat->reader.writer;
-  if (writer.empty() || !hall.steering_.disconnected(writer, Clock::now())) return;
-  Command drop;  // a hand that has gone holds nothing
-  drop.deed = Deed::drop;
-  hall.desk_.mailbox.post({drop, 0, [](const Answer&) {}});
+  if (stream->writer.empty() || !own.steering_.disconnected(stream->writer, Clock::now())) return;
+  try {
+    own.tell_whether_steered(false);
+    Command drop;  // a hand that has gone holds nothing
+    drop.kind = CommandKind::drop;
+    own.desk_.mailbox.post({drop, 0, std::make_shared<Reply>(nullptr)}, true);
+  } catch (const std::exception&) {  // without memory the hand goes on holding until a page lets go
+  }
 }
 
-void LiveServer::Hall::wake_readers() {
+void LiveServer::Connections::tell_whether_steered(bool is_steered) {
+  desk_.events.keep("steered", is_steered ? "true" : "false");
+}
+
+void LiveServer::Connections::wake_streams() {
   const std::lock_guard lock(mutex_);
-  for (Seat* seat : seats_) resume(seat->reader);
+  for (EventStream* stream : streams_) resume(*stream);
 }
 
-// Lets those go on who have waited long enough, and sends something to those who hear nothing.
-void LiveServer::Hall::beat() {
+// Resumes those who have waited long enough, sends something to those who hear nothing, and closes connections that
+// have not asked for anything in time.
+void LiveServer::Connections::beat() {
   std::unique_lock lock(mutex_);
   while (!closes_) {
     beats_.wait_for(lock, between_beats);
     const Clock::time_point now = Clock::now();
-    for (const std::shared_ptr<Visit>& visit : for_picture_)
-      if (now >= visit->until) resume(*visit);
-    for_picture_.remove_if([](const std::shared_ptr<Visit>& visit) { return !visit->suspended; });
-    for (Seat* seat : seats_) {
-      seat->reader.wants_beat = true;
-      resume(seat->reader);
+    for (const std::shared_ptr<Exchange>& exchange : for_picture_)
+      if (now >= exchange->until) resume(*exchange);
+    for_picture_.remove_if([](const std::shared_ptr<Exchange>& exchange) { return !exchange->suspended; });
+    for (EventStream* stream : streams_) {
+      stream->wants_beat = true;
+      resume(*stream);
     }
+    for (const Stranger& stranger : strangers_)
+      if (now - stranger.since > patience) ::shutdown(stranger.socket, SHUT_RDWR);
   }
 }
 
 LiveServer::LiveServer(LiveDesk& desk, const LiveAddress& address, const std::filesystem::path& files)
-    : hall_(std::make_unique<Hall>(desk, address, files)) {}
+    : connections_(std::make_unique<Connections>(desk, address, files)) {}
 LiveServer::~LiveServer() = default;
-const std::string& LiveServer::url() const { return hall_->url; }
+const std::string& LiveServer::url() const { return connections_->url; }
 
 }  // namespace supple

@@ -6,14 +6,10 @@
 #include <memory>
 #include <string>
 
+#include "live/listening_socket.h"
 #include "live/session.h"
 
 namespace supple {
-
-struct LiveAddress {
-  std::string address = "127.0.0.1";  // numeric
-  int port = 0;                       // 0: one that is free
-};
 
 class LiveServer {
  public:
@@ -26,8 +22,8 @@ class LiveServer {
   const std::string& url() const;
 
  private:
-  class Hall;
-  std::unique_ptr<Hall> hall_;
+  class Connections;
+  std::unique_ptr<Connections> connections_;
 };
 
 }  // namespace supple

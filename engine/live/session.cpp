@@ -43,9 +43,6 @@ std::string keys_text(const std::vector<MotionKey>& keys) {
   return "[" + text + "]";
 }
 
-Answer answer(int status, const Json& json) { return {status, json_text(json)}; }
-Answer refusal(int status, const std::string& text) { return answer(status, {{"error", text}}); }
-
 }  // namespace
 
 // Holds what a pointer has grabbed.
@@ -57,22 +54,31 @@ struct LiveSession::Grabbed {
 };
 
 LiveSession::LiveSession(LiveDesk& desk, World& world, FrameLoop& loop, ReplayKeeper& keeper, bool starts_paused)
-    : desk_(desk), world_(world), loop_(loop), keeper_(keeper), timeline_(world), paused_(starts_paused) {
-  go_on_with_pictures();
+    : desk_(desk),
+      world_(world),
+      loop_(loop),
+      keeper_(keeper),
+      timeline_(world),
+      paused_(starts_paused),
+      saved_(std::make_shared<std::atomic<std::size_t>>(0)) {
+  draw_on_new_stage();
   tell_controls();
   tell_words();
   tell_state();
 }
 
-LiveSession::~LiveSession() {
-  for (const Letter& letter : desk_.mailbox.close()) letter.answer(refusal(503, "the program has ended"));
-}
+LiveSession::~LiveSession() { desk_.mailbox.close(); }
 
 std::string LiveSession::play() {
   for (;;) {
     std::string message;
-    const FilmEnd end = loop_.run(*this, message);
-    keeper_.take(notes());
+    FilmEnd end = FilmEnd::failed;
+    try {
+      end = loop_.run(*this, message);
+    } catch (const std::exception& error) {
+      message = error.what();
+    }
+    keeper_.keep(notes());
     const std::string undrawn = desk_.pictures.error();
     if (end == FilmEnd::interrupted || !undrawn.empty()) {
       desk_.events.keep("end", json_text(Json{{"text", undrawn.empty() ? "the program has ended" : undrawn}}));
@@ -85,16 +91,17 @@ std::string LiveSession::play() {
 // Goes back to the last whole frame after a step that failed, without what was done since.
 void LiveSession::recover(const std::string& message) {
   paused_ = true;
-  go(int(timeline_.rows().size()));
+  go(timeline_.frames());
   say(message + "; the film is back at its last whole frame, without what was done after it");
 }
 
 std::optional<FilmEnd> LiveSession::ends() {
   for (;;) {
     if (interrupted()) return FilmEnd::interrupted;
-    take_letters();
+    serve_commands();
     if (!desk_.pictures.error().empty()) return FilmEnd::failed;
     if (desk_.pictures.has_own_view() != told_own_view_) tell_state();
+    if (keeper_.error() != told_error_) tell_words();
     const Clock::time_point now = Clock::now();
     if (std::exchange(steps_once_, false) || (!paused_ && now >= due_)) break;
     desk_.mailbox.wait_until(paused_ ? now + between_looks : std::min(due_, now + between_looks));
@@ -116,74 +123,83 @@ void LiveSession::take(FrameRow row) {
   if (ended_.size() > frames_of_rate) ended_.pop_front();
   tell_frame(row);
   tally_.add(row);
-  timeline_.add(std::move(row), world_);
+  timeline_.add(row, world_);
   const int frames = world_.frames();
   if (frames % frames_between_words == 0) {
     tell_words();
     if (!world_.script().at_work(frames).empty()) tell_controls();
   }
-  if (keeps_rate_ && frames % frames_of_budget == 0) adjust_budget();
-  if (keeper_.wants_notes()) keeper_.take(notes());
+  if (keeps_rate_ && frames % int(frames_of_budget) == 0) adjust_budget();
+  if (keeper_.wants_notes()) keeper_.keep(notes());
 }
 
-void LiveSession::take_letters() {
-  for (const Letter& letter : desk_.mailbox.take()) serve(letter);
+void LiveSession::serve_commands() {
+  for (const PostedCommand& posted : desk_.mailbox.take()) serve(posted);
+  if (std::exchange(controls_changed_, false)) tell_controls();
 }
 
-void LiveSession::serve(const Letter& letter) {
-  if (letter.command.deed == Deed::save) {
-    saved_ = timeline_.deeds();
-    keeper_.write(notes(), [answer = letter.answer, name = world_.script().scene().name](const ReplayFiles& files,
-                                                                                         const std::string& error) {
-      if (!error.empty()) return answer(refusal(500, error));
-      Json json = {{"name", name + "-live.toml"}, {"replay", files.replay_text}};
-      json["scene_name"] = files.scene.empty() ? Json(nullptr) : Json(files.scene.filename().string());
-      json["scene"] = files.scene.empty() ? Json(nullptr) : Json(files.scene_text);
-      answer({200, json_text(json)});
-    });
-    return;
-  }
+void LiveSession::serve(const PostedCommand& posted) {
+  if (posted.command.kind == CommandKind::save) return save(posted);
   try {
-    Json json = {{"input", letter.input}};
-    json.update(carry_out(letter.command));
-    desk_.pictures.note_input(letter.input);
-    letter.answer(answer(200, json));
+    desk_.pictures.note_input(posted.input);
+    Json json = {{"input", posted.input}};
+    json.update(carry_out(posted.command));
+    posted.reply->give({200, json_text(json)});
   } catch (const InputError& error) {
-    letter.answer(refusal(422, message_of(error)));
-  } catch (const RunError& error) {
-    letter.answer(refusal(500, error.what()));
+    posted.reply->give(refusal_of(422, message_of(error)));
+  } catch (const std::exception& error) {
+    posted.reply->give(refusal_of(500, error.what()));
   }
+}
+
+void LiveSession::save(const PostedCommand& posted) {
+  const auto take = [reply = posted.reply, saved = saved_, edits = timeline_.edits(),
+                     name = world_.script().scene().name](const ReplayFiles& files, const std::string& error) {
+    if (!error.empty()) return reply->give(refusal_of(500, error));
+    Json json = {{"name", name + "-live.toml"}, {"replay", files.replay_text}};
+    json["scene_name"] = files.scene.empty() ? Json(nullptr) : Json(files.scene.filename().string());
+    json["scene"] = files.scene.empty() ? Json(nullptr) : Json(files.scene_text);
+    reply->give({200, json_text(json)});
+    *saved = edits;
+  };
+  if (!keeper_.write(notes(), take)) posted.reply->give(refusal_of(429, "too many ask for the replay"));
+}
+
+// Notes what was done, so that it can be done again.
+void LiveSession::note(TimedEdit edit) {
+  loop_.end_repeats();  // an earlier session's budgets are those of another motion from here on
+  timeline_.add(std::move(edit));
 }
 
 LiveSession::Json LiveSession::carry_out(const Command& command) {
-  switch (command.deed) {
-    case Deed::set: change(command.path, command.value, command.over); break;
-    case Deed::pause: paused_ = true; break;
-    case Deed::run:
+  switch (command.kind) {
+    case CommandKind::set: change(command.path, command.value, command.over); break;
+    case CommandKind::pause: paused_ = true; break;
+    case CommandKind::run:
       paused_ = false;
       due_ = Clock::now();
       ended_.clear();
       break;
-    case Deed::step: paused_ = steps_once_ = true; break;
-    case Deed::speed:
+    case CommandKind::step: paused_ = steps_once_ = true; break;
+    case CommandKind::speed:
       speed_ = command.factor;
       due_ = Clock::now();
       ended_.clear();
       break;
-    case Deed::restart: go(0); break;
-    case Deed::go: go(command.frame); break;
-    case Deed::grab: return grab(command);
-    case Deed::drag: drag(command); return Json::object();
-    case Deed::drop: drop(command.on); break;
-    case Deed::release: release(command.body, command.name); break;
-    case Deed::keep_view: keep_view(); break;
-    case Deed::show: show(command); break;
-    case Deed::keep_rate: keep_rate(command.on); break;
-    case Deed::orbit:
-    case Deed::pan:
-    case Deed::zoom:
-    case Deed::home:
-    case Deed::save: break;  // these do not come here (server.cpp)
+    case CommandKind::restart: go(0); break;
+    case CommandKind::go: go(command.frame); break;
+    case CommandKind::grab: return grab(command);
+    case CommandKind::drag: drag(command); return Json::object();
+    case CommandKind::drop: drop(command.on); break;
+    case CommandKind::release: release(command.body, command.name); break;
+    case CommandKind::keep_view: keep_view(); break;
+    case CommandKind::show: show(command); break;
+    case CommandKind::keep_rate: keep_rate(command.on); break;
+    case CommandKind::orbit:
+    case CommandKind::pan:
+    case CommandKind::zoom:
+    case CommandKind::home:
+    case CommandKind::save: break;  // these do not come here (server.cpp)
   }
   tell_state();
   return Json::object();
@@ -204,8 +220,8 @@ void LiveSession::change(const std::string& path, const std::string& value, doub
                      parsed ? *parsed : ConfigValue::parse(toml_text(value), path).value(),
                      {path}};
   world_.change(change);
-  timeline_.add({world_.frames(), std::move(change)});
-  if (!path.ends_with(".keys")) tell_controls();
+  note({world_.frames(), std::move(change)});
+  controls_changed_ = controls_changed_ || !path.ends_with(".keys");
 }
 
 std::string LiveSession::name_for_grab(const Body& body) const {
@@ -216,17 +232,18 @@ std::string LiveSession::name_for_grab(const Body& body) const {
 }
 
 LiveSession::Json LiveSession::grab(const Command& command) {
-  if (grabbed_) drop(false);
   const OutputDef& output = world_.scene().output;
   const double aspect = double(output.width) / output.height;
   const Camera camera = desk_.pictures.seen();
   const std::optional<Pick> found = pick(world_, camera, aspect, command.at);
   if (!found) throw InputError("grab", "nothing is there");
+  if (grabbed_) drop(false);
+  tell_state();
   const Body& body = world_.bodies()[found->body];
   const std::string name = name_for_grab(body);
   const LiveGrab grab{body.def.name, name, found->vertices, found->stiffness};
   world_.grab(grab);
-  timeline_.add({world_.frames(), grab});
+  note({world_.frames(), grab});
   grabbed_ = std::make_unique<Grabbed>(Grabbed{body.def.name, name, found->place, command.at,
                                                GrabbedWay(tolerance * picture_height_at(camera, found->place),
                                                           furthest * world_.body(found->body).model().size)});
@@ -259,7 +276,7 @@ void LiveSession::drop(bool stays) {
   if (!grabbed_) return;
   const auto held = std::exchange(grabbed_, nullptr);
   if (stays) {
-    pinned_.push_back(held->name);
+    pins_.push_back({held->name, world_.frames()});
   } else {
     release(held->body, held->name);
   }
@@ -267,20 +284,30 @@ void LiveSession::drop(bool stays) {
 
 // Lets a grab go, in the frame after the one in which it takes hold if need be.
 void LiveSession::release(const std::string& body, const std::string& name) {
-  const auto holds = [&](const LiveGrab& grab) { return grab.body == body && grab.name == name; };
+  const auto is_this = [&](const LiveGrab& grab) { return grab.body == body && grab.name == name; };
   const std::vector<LiveGrab> all = holding();
-  const auto grab = std::ranges::find_if(all, holds);
+  const auto grab = std::ranges::find_if(all, is_this);
   if (grab != all.end() && grab->from >= world_.frames() / world_.scene().fps) {
-    pending_.push_back({body, name});
+    if (!is_pending(*grab)) pending_.push_back({body, name});
     return;
   }
   world_.release(body, name);
-  timeline_.add({world_.frames(), Release{body, name}});
-  std::erase(pinned_, name);
+  note({world_.frames(), Release{body, name}});
 }
 
 void LiveSession::release_dropped() {
+  if (pending_.empty()) return;
   for (const Release& dropped : std::exchange(pending_, {})) release(dropped.body, dropped.handle);
+  tell_state();
+}
+
+bool LiveSession::is_pinned(const LiveGrab& grab) const {
+  return std::ranges::find(pins_, grab.name, &Pin::name) != pins_.end();
+}
+
+bool LiveSession::is_pending(const LiveGrab& grab) const {
+  return std::ranges::any_of(pending_,
+                             [&grab](const Release& one) { return one.body == grab.body && one.handle == grab.name; });
 }
 
 // Returns the grabs that hold, and those that will in the next frame.
@@ -293,34 +320,49 @@ std::vector<LiveGrab> LiveSession::holding() const {
 
 // Goes back to the film's first frames, without what was done after them.
 void LiveSession::go(int frames) {
-  const int made = int(timeline_.rows().size());
+  const int made = timeline_.frames();
   if (frames > made) throw InputError("frame", fmt::format("the film has {} so far", count_text(made, "frame")));
-  if (frames < made) keeper_.take(notes());  // what is left behind
+  if (frames < made) keeper_.keep(notes());  // what is left behind
   grabbed_.reset();
   pending_.clear();
+  const std::uint64_t hash = frames > 0 ? timeline_.played().hashes[std::size_t(frames - 1)] : 0;
   const WorldState state = timeline_.state_before(frames, world_.script().edits());
   loop_.go_to(state, FrameRows());  // before frames are made again: the pictures see all that was changed
-  timeline_.go_on_to(frames, world_);
-  loop_.go_to(world_.state(), FrameRows(timeline_.rows()));
-  if (frames > 0 && world_.hash() != timeline_.rows().back().state_hash)
+  std::string failure;
+  try {
+    (void)timeline_.remake(frames, world_, interrupted);
+  } catch (const std::exception& error) {
+    failure = error.what();
+    loop_.go_to(state, FrameRows());
+  }
+  const std::size_t edits = timeline_.edits();
+  timeline_.cut(world_.frames());
+  *saved_ = std::min(saved_->load(), timeline_.edits());
+  loop_.go_to(world_.state(), FrameRows());
+  if (!failure.empty()) {
+    say(fmt::format("{}; the film is back at frame {}", failure, world_.frames()));
+  } else if (frames > 0 && world_.frames() == frames && world_.hash() != hash) {
     say(fmt::format("frame {} came out with other bits than before", frames));
+  }
+  std::erase_if(pins_, [this](const Pin& pin) { return pin.frames > world_.frames(); });
   for (const LiveGrab& grab : holding())
-    if (std::ranges::find(pinned_, grab.name) == pinned_.end()) release(grab.body, grab.name);
-  std::erase_if(pinned_, [all = holding()](const std::string& name) {
-    return std::ranges::find(all, name, &LiveGrab::name) == all.end();
-  });
-  tally_ = RowTally(timeline_.rows());
+    if (!is_pinned(grab)) release(grab.body, grab.name);
+  tally_ = {};
   ended_.clear();
   due_ = Clock::now();
-  keeper_.take(notes(), frames < made);
+  if (edits > timeline_.edits()) {
+    keeper_.keep_apart(notes());
+  } else {
+    keeper_.keep(notes());
+  }
   loop_.show_again();
-  tell_controls();
+  controls_changed_ = true;
   tell_words();
   tell_state();
 }
 
 // Lets the target draw on the loop's stage, beginning with the world as it is.
-void LiveSession::go_on_with_pictures() {
+void LiveSession::draw_on_new_stage() {
   desk_.pictures.begin(*loop_.stage());
   loop_.show_again();
 }
@@ -328,12 +370,12 @@ void LiveSession::go_on_with_pictures() {
 void LiveSession::show(const Command& command) {
   const std::string field = command.field.value_or(field_);
   const bool wireframe = command.wireframe.value_or(wireframe_), marks = command.marks.value_or(marks_);
-  loop_.dress({fmt::format("field.quantity={}", field), fmt::format("look.wireframe={}", wireframe),
-               fmt::format("look.marks={}", marks)});
+  loop_.change_look({fmt::format("field.quantity={}", field), fmt::format("look.wireframe={}", wireframe),
+                     fmt::format("look.marks={}", marks)});
   field_ = field;
   wireframe_ = wireframe;
   marks_ = marks;
-  go_on_with_pictures();
+  draw_on_new_stage();
 }
 
 void LiveSession::keep_view() {
@@ -345,45 +387,43 @@ void LiveSession::keep_view() {
   say("the film of the replay has this view from here on");
 }
 
-// Returns the value in force in the next frame, as a scene's file would have it.
-std::string LiveSession::value_of(const std::string& path) const {
-  for (const LiveKey& key : world_.script().live(world_.frames()))
-    if (key.key.path == path) return key.key.value;
-  return "";
-}
-
+// Makes steps end when their share of a frame's time is over, or ends this. All budgets of the scene are set: its own,
+// and those of bodies that have one.
 void LiveSession::keep_rate(bool on) {
   if (on == keeps_rate_) return;
-  keeps_rate_ = on;
   if (on) {
-    budget_before_ = value_of(budget_path);
+    budgets_before_.clear();
+    for (const LiveKey& key : world_.script().live(world_.frames()))
+      if (key.key.path.ends_with(budget_path)) budgets_before_.emplace_back(key.key.path, key.key.value);
+    if (budgets_before_.empty()) throw InputError("keep_rate", "no body's solver has a budget of time");
     budget_ms_ = period_ms() / double(world_.size() * std::size_t(world_.scene().substeps));
-    adjust_budget();
+    set_budgets(budget_ms_);
   } else {
-    change(budget_path, budget_before_, 0);
+    for (const auto& [path, value] : budgets_before_) change(path, value, 0);
   }
+  keeps_rate_ = on;
+}
+
+void LiveSession::set_budgets(double ms) {
+  budget_ms_ = ms;
+  for (const auto& [path, before] : budgets_before_) change(path, fmt::format("{:.2f}", ms), 0);
 }
 
 // Gives steps as much more or less time as the last frames were too quick or too slow.
 void LiveSession::adjust_budget() {
   constexpr double used = 0.95, least = 0.3;  // of the time that a frame has; of a budget [ms]
   std::vector<double> took(frame_ms_.begin(), frame_ms_.end());
-  if (took.empty()) return;
   std::ranges::sort(took);
   const double steps = double(world_.size()) * world_.scene().substeps;
   const double spare = used * period_ms() - took[took.size() / 2];
-  const double budget = std::clamp(budget_ms_ + 0.7 * spare / steps, least, period_ms() / steps);
-  if (std::abs(budget - budget_ms_) < 0.05 * budget_ms_ && value_of(budget_path) != budget_before_) return;
-  budget_ms_ = budget;
-  change(budget_path, fmt::format("{:.2f}", budget), 0);
+  const double budget = std::clamp(budget_ms_ + 0.7 * spare / steps, least, std::max(least, period_ms() / steps));
+  if (std::abs(budget - budget_ms_) > 0.05 * budget_ms_) set_budgets(budget);
 }
 
-ReplayNotes LiveSession::notes() const {
-  return {int(timeline_.rows().size()), world_.script().edits(), timeline_.played()};
-}
+ReplayNotes LiveSession::notes() const { return {timeline_.frames(), world_.script().edits(), timeline_.played()}; }
 
 // Returns how fast the film runs, over the speed that is wanted; 1 until it is known.
-double LiveSession::measured_rate() {
+double LiveSession::measured_rate() const {
   if (ended_.size() < 2) return 1;
   const std::chrono::duration<double> took = ended_.back() - ended_.front();
   return double(ended_.size() - 1) / (world_.scene().fps * speed_ * took.count());
@@ -411,7 +451,7 @@ void LiveSession::tell_scene(const std::string& record) {
   for (const auto& [name, value] : all) desk_.events.keep_silently(name, json_text(value));
 }
 
-bool LiveSession::has_unsaved_edits() const { return timeline_.deeds() > saved_; }
+bool LiveSession::has_unsaved_edits() const { return timeline_.edits() > *saved_; }
 
 void LiveSession::tell_frame(const FrameRow& row) {
   double error = 0, motion = 0;
@@ -440,8 +480,7 @@ void LiveSession::tell_state() {
   told_own_view_ = desk_.pictures.has_own_view();
   Json pins = Json::array();
   for (const LiveGrab& grab : holding()) {
-    if (std::ranges::find(pinned_, grab.name) != pinned_.end())
-      pins.push_back({{"body", grab.body}, {"name", grab.name}});
+    if (is_pinned(grab) && !is_pending(grab)) pins.push_back({{"body", grab.body}, {"name", grab.name}});
   }
   const Json json = {{"paused", paused_},
                      {"speed", speed_},
@@ -479,7 +518,8 @@ void LiveSession::tell_controls() {
 void LiveSession::tell_words() {
   std::vector<std::string> words = tally_.warnings();
   if (const std::string unsolved = tally_.unsolved_text(); !unsolved.empty()) words.push_back(unsolved);
-  if (const std::string error = keeper_.error(); !error.empty()) words.push_back(error);
+  told_error_ = keeper_.error();
+  if (!told_error_.empty()) words.push_back(told_error_);
   const std::string text = json_text(Json(words));
   if (text == told_words_) return;
   told_words_ = text;

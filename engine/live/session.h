@@ -12,6 +12,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "film/frame_loop.h"
@@ -53,38 +54,45 @@ class LiveSession : public FrameGuide {
   // Tells whether something was done that no replay has that was asked for since.
   bool has_unsaved_edits() const;
 
-  const std::vector<FrameRow>& rows() const { return timeline_.rows(); }
+  int frames() const { return timeline_.frames(); }
 
  private:
   using Clock = std::chrono::steady_clock;
   using Json = nlohmann::ordered_json;
   struct Grabbed;
+  struct Pin {
+    std::string name;  // of the grab
+    int frames;        // that there were before it was pinned
+  };
 
-  void take_letters();
-  void serve(const Letter& letter);
+  void serve_commands();
+  void serve(const PostedCommand& posted);
+  void save(const PostedCommand& posted);
   Json carry_out(const Command& command);
-  void set(const Command& command);
   void change(const std::string& path, const std::string& value, double over);
   Json grab(const Command& command);
   void drag(const Command& command);
   void move_to_pointer();
   void drop(bool stays);
   void release(const std::string& body, const std::string& name);
+  void release_dropped();
   void go(int frames);
   void show(const Command& command);
   void keep_view();
   void keep_rate(bool on);
+  void set_budgets(double ms);
   void adjust_budget();
-  double period_ms() const { return 1000 / (world_.scene().fps * speed_); }
-  void go_on_with_pictures();
 
-  void release_dropped();
+  void note(TimedEdit edit);
   void recover(const std::string& message);
+  void draw_on_new_stage();
   ReplayNotes notes() const;
-  double measured_rate();
+  double period_ms() const { return 1000 / (world_.scene().fps * speed_); }
+  double measured_rate() const;
   std::string name_for_grab(const Body& body) const;
-  std::string value_of(const std::string& path) const;
   std::vector<LiveGrab> holding() const;
+  bool is_pending(const LiveGrab& grab) const;
+  bool is_pinned(const LiveGrab& grab) const;
   void tell_state();
   void tell_controls();
   void tell_words();
@@ -96,23 +104,30 @@ class LiveSession : public FrameGuide {
   FrameLoop& loop_;
   ReplayKeeper& keeper_;
   Timeline timeline_;
-  RowTally tally_;                    // of the timeline's rows
+  RowTally tally_;  // of the frames since the film last went back
+
   std::unique_ptr<Grabbed> grabbed_;  // what the pointer holds; null: nothing
-  bool paused_, steps_once_ = false, keeps_rate_ = false;
+  std::vector<Release> pending_;      // grabs that were dropped before they took hold
+  std::vector<Pin> pins_;             // grabs that hold without a pointer, or did
+
+  bool paused_, steps_once_ = false;
   double speed_ = 1;
-  Clock::time_point begun_;              // when the last frame began
-  std::deque<double> frame_ms_;          // times of the last frames, without waiting [ms]
   Clock::time_point due_;                // when the next frame may begin
+  Clock::time_point begun_;              // when the last frame began
   std::deque<Clock::time_point> ended_;  // when the last frames ended, since the film last began to run
-  std::string budget_before_ = "0";      // solver.budget_ms before keep_rate
-  double budget_ms_ = 0;                 // that keep_rate has set
-  std::string field_ = "none";
+  std::deque<double> frame_ms_;          // times of the last frames, without waiting [ms]
+
+  bool keeps_rate_ = false;
+  double budget_ms_ = 0;                                             // that keep_rate() has set
+  std::vector<std::pair<std::string, std::string>> budgets_before_;  // the paths of budgets, and their values before it
+
+  std::string field_ = "none";  // that pictures show
   bool wireframe_ = false, marks_ = false;
-  std::vector<std::string> dress_;   // the settings of the pictures
-  std::vector<Release> pending_;     // grabs that were dropped before they took hold
-  std::vector<std::string> pinned_;  // names of grabs that hold without a pointer
+
+  std::shared_ptr<std::atomic<std::size_t>> saved_;  // number of edits in the last replay that was asked for
+  bool controls_changed_ = false;
   bool told_own_view_ = false;
-  std::size_t saved_ = 0;  // number of deeds that the last replay has that was asked for
+  std::string told_error_;  // of the keeper
   std::string told_words_;
   std::vector<LiveKey> told_controls_;
 };

@@ -29,8 +29,12 @@ WorldState without_edits(WorldState state) {
 
 Timeline::Timeline(const World& world) { states_.push_back(without_edits(world.state())); }
 
-void Timeline::add(FrameRow row, const World& world) {
-  rows_.push_back(std::move(row));
+void Timeline::add(const FrameRow& row, const World& world) {
+  played_.hashes.push_back(row.state_hash);
+  for (const BodyRow& body : row.bodies) {
+    for (int substep = 0; substep < std::ssize(body.budget_cuts); ++substep)
+      played_.cuts.push_back({body.name, row.frame, substep, {body.budget_cuts[std::size_t(substep)]}});
+  }
   if (world.frames() % every_ != 0) return;
   states_.push_back(without_edits(world.state()));
   bytes_ = std::max(bytes_, bytes_of(states_.back()));
@@ -49,11 +53,11 @@ WorldState Timeline::state_before(int frames, const LiveEdits& all) const {
   // Edits are listed in the order in which they were made, each kind by itself.
   std::size_t changes = 0, grabs = 0;
   std::vector<const Release*> releases;
-  for (const Done& done : done_) {
-    if (done.frames >= state.frames) break;
-    changes += std::holds_alternative<TimedChange>(done.what);
-    grabs += std::holds_alternative<LiveGrab>(done.what);
-    if (const auto* release = std::get_if<Release>(&done.what)) releases.push_back(release);
+  for (const TimedEdit& edit : edits_) {
+    if (edit.frames >= state.frames) break;
+    changes += std::holds_alternative<TimedChange>(edit.what);
+    grabs += std::holds_alternative<LiveGrab>(edit.what);
+    if (const auto* release = std::get_if<Release>(&edit.what)) releases.push_back(release);
   }
   state.edits.changes.assign(all.changes.begin(), all.changes.begin() + std::ptrdiff_t(changes));
   state.edits.grabs.assign(all.grabs.begin(), all.grabs.begin() + std::ptrdiff_t(grabs));
@@ -66,39 +70,39 @@ WorldState Timeline::state_before(int frames, const LiveEdits& all) const {
   return state;
 }
 
-void Timeline::redo(const Done& done, World& world) const {
-  if (const auto* change = std::get_if<TimedChange>(&done.what)) world.change(*change);
-  if (const auto* grab = std::get_if<LiveGrab>(&done.what)) world.grab(*grab);
-  if (const auto* release = std::get_if<Release>(&done.what)) world.release(release->body, release->handle);
+void Timeline::redo(const TimedEdit& edit, World& world) const {
+  if (const auto* change = std::get_if<TimedChange>(&edit.what)) world.change(*change);
+  if (const auto* grab = std::get_if<LiveGrab>(&edit.what)) world.grab(*grab);
+  if (const auto* release = std::get_if<Release>(&edit.what)) world.release(release->body, release->handle);
 }
 
-void Timeline::go_on_to(int frames, World& world) {
-  rows_.resize(std::size_t(frames));
-  std::erase_if(states_, [frames](const WorldState& state) { return state.frames > frames; });
-  std::erase_if(done_, [frames](const Done& done) { return done.frames >= frames; });
-  auto next = std::ranges::lower_bound(done_, world.frames(), {}, &Done::frames);
+bool Timeline::remake(int frames, World& world, const std::function<bool()>& stops) const {
+  auto next = std::ranges::lower_bound(edits_, world.frames(), {}, &TimedEdit::frames);
+  auto cut = std::ranges::lower_bound(played_.cuts, world.frames(), {}, &PlayedCut::frame);
   while (world.frames() < frames) {
+    if (stops()) return false;
     const int frame = world.frames();
-    for (; next != done_.end() && next->frames == frame; ++next) redo(*next, world);
+    for (; next != edits_.end() && next->frames == frame; ++next) redo(*next, world);
+    const auto end = std::find_if(cut, played_.cuts.end(), [frame](const PlayedCut& one) { return one.frame > frame; });
     const auto repeat = [&](std::size_t body, int substep) {
-      const auto& cuts = rows_[std::size_t(frame)].bodies[body].budget_cuts;
-      if (substep < std::ssize(cuts)) world.body(body).repeat(BudgetCuts{cuts[std::size_t(substep)]});
+      const auto noted = std::find_if(cut, end, [&](const PlayedCut& one) {
+        return one.body == world.bodies()[body].def.name && one.substep == substep;
+      });
+      world.body(body).repeat(noted == end ? std::nullopt : std::optional(noted->cuts));
     };
-    if (!world.play(frame, {repeat, {}})) throw RunError(fmt::format("frame {} could not be made again", frame));
+    const bool made = world.play(frame, {repeat, {}});
     for (std::size_t b = 0; b < world.size(); ++b) world.body(b).keep_to_clock();
+    if (!made) throw RunError(fmt::format("frame {} could not be made again", frame));
+    cut = end;
   }
+  return true;
 }
 
-PlayedSession Timeline::played() const {
-  PlayedSession played;
-  for (const FrameRow& row : rows_) {
-    played.hashes.push_back(row.state_hash);
-    for (const BodyRow& body : row.bodies) {
-      for (int substep = 0; substep < std::ssize(body.budget_cuts); ++substep)
-        played.cuts.push_back({body.name, row.frame, substep, {body.budget_cuts[std::size_t(substep)]}});
-    }
-  }
-  return played;
+void Timeline::cut(int frames) {
+  played_.hashes.resize(std::size_t(frames));
+  std::erase_if(played_.cuts, [frames](const PlayedCut& one) { return one.frame >= frames; });
+  std::erase_if(states_, [frames](const WorldState& state) { return state.frames > frames; });
+  std::erase_if(edits_, [frames](const TimedEdit& edit) { return edit.frames >= frames; });
 }
 
 }  // namespace supple

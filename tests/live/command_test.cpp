@@ -18,7 +18,7 @@ std::string refusal(const std::string& json) {
 
 TEST(LiveCommand, SaysWhatThePageAsksFor) {
   const Command set = read_command(R"({"do":"set","path":"body.bunny.material.mu","value":"2e5","over":0.5})");
-  EXPECT_EQ(set.deed, Deed::set);
+  EXPECT_EQ(set.kind, CommandKind::set);
   EXPECT_EQ(set.path, "body.bunny.material.mu");
   EXPECT_EQ(set.value, "2e5");
   EXPECT_EQ(set.over, 0.5);
@@ -33,7 +33,7 @@ TEST(LiveCommand, SaysWhatThePageAsksFor) {
   EXPECT_FALSE(show.wireframe);
 }
 
-TEST(LiveCommand, OfEveryDeedCanBeAsked) {
+TEST(LiveCommand, EveryKindCanBeRead) {
   const std::map<std::string, std::string> keys = {{"set", R"(,"path":"gravity","value":"[0,0,0]")"},
                                                    {"speed", R"(,"factor":1)"},
                                                    {"go", R"(,"frame":0)"},
@@ -44,10 +44,10 @@ TEST(LiveCommand, OfEveryDeedCanBeAsked) {
                                                    {"pan", R"(,"by":[0,0])"},
                                                    {"zoom", R"(,"by":1)"},
                                                    {"keep_rate", R"(,"on":true)"}};
-  for (const std::string& name : all_names<Deed>()) {
+  for (const std::string& name : all_names<CommandKind>()) {
     const auto more = keys.find(name);
     const std::string json = "{\"do\":\"" + name + "\"" + (more == keys.end() ? "" : more->second) + "}";
-    EXPECT_EQ(name_of(read_command(json).deed), name);
+    EXPECT_EQ(name_of(read_command(json).kind), name);
   }
 }
 
@@ -66,7 +66,7 @@ TEST(LiveCommand, WhatIsWrongIsNamed) {
   EXPECT_EQ(refusal(R"({"do":"go","frame":1e300})"), "frame: wants a number, 0 to 1e+06");
   EXPECT_EQ(refusal(R"({"do":"orbit","by":[1]})"), "by: wants two numbers, each -360 to 360");
   EXPECT_EQ(refusal(R"({"do":"orbit","by":[1,"2"]})"), "by: wants two numbers, each -360 to 360");
-  EXPECT_EQ(refusal(R"({"do":"pause","frame":3})"), "frame: this deed has no such key");
+  EXPECT_EQ(refusal(R"({"do":"pause","frame":3})"), "frame: this command has no such key");
   EXPECT_TRUE(refusal(R"({"do":"show","field":"beauty"})").starts_with("field: wants none, stretch"));
   EXPECT_EQ(refusal(R"({"do":"keep_rate","on":1})"), "on: wants true or false");
 }

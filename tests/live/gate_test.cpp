@@ -18,19 +18,19 @@ int status_of(const Gate& gate, const LiveRequest& request) {
   return refusal != nullptr ? refusal->status : 200;
 }
 
-TEST(LiveGate, DoorsOpenToTheTokenAlone) {
-  const Gate gate("0123", false);
-  EXPECT_EQ(std::get<Door>(gate.admit(get("/0123/"))), Door::page);
-  EXPECT_EQ(std::get<Door>(gate.admit(get("/0123/live.js"))), Door::script);
-  EXPECT_EQ(std::get<Door>(gate.admit(get("/0123/events"))), Door::events);
-  EXPECT_EQ(std::get<Door>(gate.admit(post("/0123/do"))), Door::act);
+TEST(LiveGate, RoutesOpenToTheTokenAlone) {
+  const Gate gate("0123", Reach::loopback);
+  EXPECT_EQ(std::get<Route>(gate.admit(get("/0123/"))), Route::page);
+  EXPECT_EQ(std::get<Route>(gate.admit(get("/0123/live.js"))), Route::script);
+  EXPECT_EQ(std::get<Route>(gate.admit(get("/0123/events"))), Route::events);
+  EXPECT_EQ(std::get<Route>(gate.admit(post("/0123/do"))), Route::act);
   for (const char* path : {"", "/", "//", "/0123", "0123/", "/0124/", "/012/", "/01234/", "/0123x", "/live.js",
                            "/0123/../live.js", "/0123//", "/0123/live.js/", "/0123/etc/passwd", "/0124/events"})
     EXPECT_EQ(status_of(gate, get(path)), 404) << path;
 }
 
-TEST(LiveGate, MethodsAreThoseOfTheDoor) {
-  const Gate gate("0123", false);
+TEST(LiveGate, MethodsAreThoseOfTheRoute) {
+  const Gate gate("0123", Reach::loopback);
   EXPECT_EQ(status_of(gate, post("/0123/")), 405);
   EXPECT_EQ(status_of(gate, post("/0123/events")), 405);
   EXPECT_EQ(status_of(gate, get("/0123/do")), 405);
@@ -40,7 +40,7 @@ TEST(LiveGate, MethodsAreThoseOfTheDoor) {
 }
 
 TEST(LiveGate, NamesThatOthersGiveThisHostAreRefused) {
-  const Gate near("0123", false), far("0123", true);
+  const Gate near("0123", Reach::loopback), far("0123", Reach::network);
   LiveRequest request = get("/0123/");
   for (const char* own : {"localhost", "localhost:9000", "127.0.0.1", "127.0.0.1:1", "[::1]:8000", "[::1]"}) {
     request.host = own;
@@ -59,7 +59,7 @@ TEST(LiveGate, NamesThatOthersGiveThisHostAreRefused) {
 }
 
 TEST(LiveGate, PagesFromElsewhereAreRefused) {
-  const Gate gate("0123", false);
+  const Gate gate("0123", Reach::loopback);
   LiveRequest request = post("/0123/do");
   EXPECT_EQ(status_of(gate, request), 200);
   for (const char* origin : {"http://evil.example", "null", "https://127.0.0.1:8000", "http://127.0.0.1:8001"}) {
@@ -69,7 +69,7 @@ TEST(LiveGate, PagesFromElsewhereAreRefused) {
 }
 
 TEST(LiveGate, BodiesThatAreAnnouncedTooLargeAreRefused) {
-  const Gate gate("0123", false);
+  const Gate gate("0123", Reach::loopback);
   LiveRequest request = post("/0123/do");
   for (const char* length : {"4097", "1073741824", "99999999999999999999999", "-1", "1e3", "12x"}) {
     request.length = length;
@@ -109,14 +109,18 @@ TEST(Steering, IsOnePages) {
   EXPECT_FALSE(steering.disconnected(first, start + seconds(108)));
 }
 
-TEST(Steering, CommandsHaveARate) {
-  Steering steering;
+TEST(RateLimit, AllowsSoManyASecond) {
+  RateLimit limit(300, 200);
   Clock::time_point now = Clock::now();
   int allowed = 0;
-  for (int i = 0; i < 1000; ++i) allowed += steering.allows_command(now) ? 1 : 0;
-  EXPECT_EQ(allowed, 300);
-  for (int i = 0; i < 1000; ++i) allowed += steering.allows_command(now += milliseconds(1)) ? 1 : 0;
-  EXPECT_NEAR(allowed, 600, 1);
+  for (int i = 0; i < 1000; ++i) allowed += limit.allows(now) ? 1 : 0;
+  EXPECT_EQ(allowed, 200);
+  for (int i = 0; i < 1000; ++i) allowed += limit.allows(now += milliseconds(1)) ? 1 : 0;
+  EXPECT_NEAR(allowed, 500, 1);
+  now += seconds(100);
+  allowed = 0;
+  for (int i = 0; i < 1000; ++i) allowed += limit.allows(now) ? 1 : 0;
+  EXPECT_EQ(allowed, 200);
 }
 
 }  // namespace gate_test

@@ -59,7 +59,7 @@ def no_complaints(browser):
 def test_a_hand_on_the_page(browser, bunny, tmp_path):
     open_page(browser, bunny)
     # A slider is turned.
-    young = "document.querySelector('#control-body_bunny_material_young')"
+    young = "document.querySelector('#control-body_2e_bunny_2e_material_2e_young')"
     before = browser.value(f"{young}.value")
     browser.value(f"{young}.parentNode.querySelector('input[type=range]').focus()")
     for _ in range(5):
@@ -77,7 +77,7 @@ def test_a_hand_on_the_page(browser, bunny, tmp_path):
     browser.key(".", "Period", ".")
     wait_frames(browser, paused + 1)
     browser.value("(one => { one.value = 'newton'; one.dispatchEvent(new Event('change', {bubbles: true})); })("
-                  "document.querySelector('#control-solver_method'))")
+                  "document.querySelector('#control-solver_2e_method'))")
     time.sleep(0.5)
     browser.key(" ", "Space", " ")
     wait_frames(browser, paused + 15)

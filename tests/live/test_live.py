@@ -85,38 +85,38 @@ def test_random_sessions_are_replays(live, scene, tmp_path, seed):
     page = session.page
     held = False
     for _ in range(40):
-        deed = choose.choice(["young", "gravity", "iterations", "density", "grab", "drag", "drag", "drop", "step", "run",
+        act = choose.choice(["young", "gravity", "iterations", "density", "grab", "drag", "drag", "drop", "step", "run",
                               "speed", "go", "wait", "show", "budget", "restart"])
-        if deed == "young":
+        if act == "young":
             page.do(do="set", path=f"body.{choose.choice(['bar', 'cube'])}.material.young",
                     value=f"{10 ** choose.uniform(3.5, 5.5):.4g}", over=choose.choice([0, 0, 0.3]))
-        elif deed == "gravity":
+        elif act == "gravity":
             page.do(do="set", path="gravity", value=f"[{choose.uniform(-3, 3)}, {choose.uniform(-12, 0)}, 0]")
-        elif deed == "iterations":
+        elif act == "iterations":
             page.do(do="set", path="solver.iterations", value=str(choose.randint(2, 20)))
-        elif deed == "density":
+        elif act == "density":
             page.do(do="set", path="body.cube.density", value=str(choose.randint(300, 3000)))
-        elif deed == "grab":
+        elif act == "grab":
             held = page.command(do="grab", x=choose.uniform(0.3, 0.7), y=choose.uniform(0.2, 0.8))[0] == 200
-        elif deed == "drag" and held:
+        elif act == "drag" and held:
             page.do(do="drag", x=choose.uniform(0.3, 0.7), y=choose.uniform(0.2, 0.8))
-        elif deed == "drop":
+        elif act == "drop":
             page.do(do="drop", pin=choose.random() < 0.3)
             held = False
-        elif deed == "step":
+        elif act == "step":
             page.do(do="step")
-        elif deed == "run":
+        elif act == "run":
             page.do(do="run")
-        elif deed == "speed":
+        elif act == "speed":
             page.do(do="speed", factor=choose.choice([0.5, 1, 4]))
-        elif deed == "go" and choose.random() < 0.5:
+        elif act == "go" and choose.random() < 0.5:
             page.do(do="go", frame=choose.randint(0, page.do(do="pause") and page.state()["frame"]))
             held = False
-        elif deed == "show" and choose.random() < 0.3:
+        elif act == "show" and choose.random() < 0.3:
             page.do(do="show", field=choose.choice(["none", "speed", "volume"]))
-        elif deed == "budget":
+        elif act == "budget":
             page.do(do="set", path="solver.budget_ms", value=choose.choice(["0", "0.5", "2"]))
-        elif deed == "restart" and choose.random() < 0.1:
+        elif act == "restart" and choose.random() < 0.1:
             page.do(do="restart")
             held = False
         else:

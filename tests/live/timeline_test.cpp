@@ -37,13 +37,15 @@ class Session {
       FrameRow row;
       row.frame = world.frames();
       row.bodies.resize(world.size());
+      for (std::size_t b = 0; b < world.size(); ++b) row.bodies[b].name = world.bodies()[b].def.name;
       const auto note = [&](std::size_t body, int) {
         if (has_time_budget(world.body(body).inputs()))
           row.bodies[body].budget_cuts.push_back(world.body(body).report().cuts.after);
       };
       ASSERT_TRUE(world.play(world.frames(), {{}, note}));
       row.state_hash = world.hash();
-      timeline.add(std::move(row), world);
+      budgeted = row.bodies[0].budget_cuts.size();
+      timeline.add(row, world);
     }
   }
   void set(const std::string& path, const std::string& value) {
@@ -61,11 +63,13 @@ class Session {
   }
   void go(int frames) {
     world.restore(timeline.state_before(frames, world.script().edits()));
-    timeline.go_on_to(frames, world);
+    EXPECT_TRUE(timeline.remake(frames, world, [] { return false; }));
+    timeline.cut(frames);
   }
 
   World world;
   Timeline timeline;
+  std::size_t budgeted = 0;  // steps of the first body in the last frame that had a budget
 };
 
 // Does all that can be done, over 60 frames.
@@ -88,11 +92,7 @@ void do_much(Session& session) {
   session.play(19);
 }
 
-std::vector<std::uint64_t> hashes(const Session& session) {
-  std::vector<std::uint64_t> list;
-  for (const FrameRow& row : session.timeline.rows()) list.push_back(row.state_hash);
-  return list;
-}
+std::vector<std::uint64_t> hashes(const Session& session) { return session.timeline.played().hashes; }
 
 TEST(Timeline, EveryFrameHasItsBitsAgain) {
   Session session;
@@ -153,7 +153,17 @@ TEST(Timeline, StepsThatABudgetHasEndedEndThereAgain) {
     EXPECT_EQ(session.world.hash(), made[std::size_t(frames - 1)]) << frames;
   }
   session.play(1);  // by the clock again
-  EXPECT_EQ(session.timeline.rows().back().bodies[0].budget_cuts.size(), 2u);
+  EXPECT_EQ(session.budgeted, 2u);
+}
+
+TEST(Timeline, RemakingStopsBetweenFrames) {
+  Session session;
+  do_much(session);
+  const std::vector<std::uint64_t> made = hashes(session);
+  session.world.restore(session.timeline.state_before(39, session.world.script().edits()));
+  const int begun = session.world.frames();
+  EXPECT_FALSE(session.timeline.remake(39, session.world, [&] { return session.world.frames() == begun + 2; }));
+  EXPECT_EQ(session.world.hash(), made[std::size_t(begun + 1)]);
 }
 
 }  // namespace timeline_test

@@ -33,17 +33,21 @@ ReferenceRun::ReferenceRun(const std::filesystem::path& folder, const std::vecto
 }
 
 Positions ReferenceRun::at(std::size_t body, int frame) {
-  if (frame >= motion_[body].frames())
-    throw InputError(folder_.string(), fmt::format("has {} frames, and frame {} is needed for the comparison",
-                                                   motion_[body].frames(), frame));
-  return motion_[body].frame(frame).rowwise() + origin_[body].transpose();
+  return motion_[body].frame(std::min(frame, motion_[body].frames() - 1)).rowwise() + origin_[body].transpose();
+}
+
+void ReferenceRun::require(int frame) const {
+  for (const PointCacheReader& motion : motion_) {
+    if (frame >= motion.frames())
+      throw InputError(folder_.string(),
+                       fmt::format("has {} frames, and frame {} is needed for the comparison", motion.frames(), frame));
+  }
 }
 
 void check_references(const SceneDef& scene, const std::vector<Body>& bodies, int last_frame) {
   const auto check = [&](const std::filesystem::path& folder) {
     if (folder.empty()) return;
-    ReferenceRun run(folder, bodies);
-    for (std::size_t b = 0; b < bodies.size(); ++b) run.at(b, last_frame);
+    ReferenceRun(folder, bodies).require(last_frame);
   };
   if (scene.field.quantity == FieldQuantity::distance) check(scene.field.reference);
   check(scene.look.ghost);

@@ -15,9 +15,11 @@ class ReferenceRun {
   // number of vertices there.
   ReferenceRun(const std::filesystem::path& folder, const std::vector<Body>& bodies);
 
-  // Returns where the body is in a frame, by vertex of its mesh [m]. Throws InputError when the run does not have the
-  // frame.
+  // Returns where the body is in a frame, by vertex of its mesh [m]; after the run's last frame, where it is in that
+  // one.
   Positions at(std::size_t body, int frame);
+  // Throws InputError when the run does not have the frame.
+  void require(int frame) const;
 
  private:
   std::filesystem::path folder_;

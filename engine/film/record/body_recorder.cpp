@@ -91,12 +91,16 @@ void BodyRecorder::begin_frame(int frame, bool measure_error, BodyRow& row) {
   if (!world_.colliders().colliders.empty()) row.contact.emplace();
 }
 
+void BodyRecorder::end_repeats() {
+  if (std::exchange(repeated_, nullptr) != nullptr) moving().keep_to_clock();
+}
+
 void BodyRecorder::before_step(int substep) {
   const Zone zone("energy budget", body().def.name);
   if (repeated_ != nullptr && frame_ < std::ssize(*repeated_)) {
     moving().repeat(cuts_at(*repeated_, frame_, substep));
-  } else if (std::exchange(repeated_, nullptr) != nullptr) {
-    moving().keep_to_clock();
+  } else {
+    end_repeats();
   }
   if (is_measured(substep)) errors_.before_step(body_);
   OpenWorkspace& w = moving().workspace();

@@ -32,6 +32,8 @@ class BodyRecorder {
   // Lets the steps end where an earlier run's budgets ended them, as far as its frames go. cuts: the cuts of that run;
   // they must outlive this object.
   void repeat(const CutsByFrame& cuts) { repeated_ = &cuts; }
+  // Lets the clock end the steps from now on.
+  void end_repeats();
 
   // Begins the row of a frame, before its first step. measure_error: whether the errors of the frame's last step are
   // measured. row: the row to be filled in; it must stay where it is until the frame is over.

@@ -42,7 +42,7 @@ std::vector<CutsByFrame> repeated_cuts(const std::filesystem::path& run, const s
 }
 
 std::vector<CutsByFrame> repeated_cuts(const PlayedSession& session, const std::vector<std::string>& bodies) {
-  if (session.cuts.empty()) return {};
+  if (session.hashes.empty()) return {};
   std::vector<CutsByFrame> result(bodies.size(), CutsByFrame(session.hashes.size()));
   for (const PlayedCut& cut : session.cuts) {
     const auto body = std::ranges::find(bodies, cut.body);

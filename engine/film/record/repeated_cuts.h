@@ -19,7 +19,7 @@ using CutsByFrame = std::vector<std::vector<BudgetCuts>>;
 std::vector<CutsByFrame> repeated_cuts(const std::filesystem::path& run, const std::vector<std::string>& bodies,
                                        int frames);
 
-// Returns the cuts of a live session by body; no body where it has none. Throws InputError where it
+// Returns the cuts of a live session by body; no body where there was no session. Throws InputError where it
 // names what a film cannot have.
 std::vector<CutsByFrame> repeated_cuts(const PlayedSession& session, const std::vector<std::string>& bodies);
 

@@ -2,8 +2,6 @@
 
 #include <csetjmp>
 #include <cstdio>  // before jpeglib.h, which needs it
-#include <cstdlib>
-#include <memory>
 #include <string>
 
 #include <jpeglib.h>
@@ -26,9 +24,9 @@ struct JpegErrors {
   std::longjmp(errors->back, 1);
 }
 
-// Returns false after an error. The memory of the result is the caller's to free in both cases. No object with a
-// destructor may live in this function, which errors leave by a jump.
-bool compress(int width, int height, const std::uint8_t* rgb, int quality, unsigned char** bytes, unsigned long* size,
+// Returns false after an error. bytes: room for `size` bytes, which suffice; `size` becomes how many there are. No
+// object with a destructor may live in this function, which errors leave by a jump.
+bool compress(int width, int height, const std::uint8_t* rgb, int quality, unsigned char* bytes, unsigned long& size,
               JpegErrors& errors) {
   jpeg_compress_struct info{};
   info.err = jpeg_std_error(&errors.manager);
@@ -38,7 +36,7 @@ bool compress(int width, int height, const std::uint8_t* rgb, int quality, unsig
     return false;
   }
   jpeg_create_compress(&info);
-  jpeg_mem_dest(&info, bytes, size);
+  jpeg_mem_dest(&info, &bytes, &size);
   info.image_width = static_cast<JDIMENSION>(width);
   info.image_height = static_cast<JDIMENSION>(height);
   info.input_components = 3;
@@ -61,14 +59,15 @@ bool compress(int width, int height, const std::uint8_t* rgb, int quality, unsig
 
 std::vector<std::uint8_t> jpeg_bytes(int width, int height, const std::vector<std::uint8_t>& rgb, int quality) {
   SUPPLE_CHECK(rgb.size(), ==, 3 * std::size_t(width) * std::size_t(height));
-  unsigned char* bytes = nullptr;
-  unsigned long size = 0;
-  const std::unique_ptr<unsigned char*, void (*)(unsigned char**)> owner(&bytes,
-                                                                         [](unsigned char** one) { std::free(*one); });
+  // A block of 8 x 8 pixels has at most 6 bytes a pixel without subsampling (as TurboJPEG's tjBufSize counts).
+  const auto blocks = [](int pixels) { return (static_cast<std::size_t>(pixels) + 15) / 16 * 16; };
+  std::vector<std::uint8_t> bytes(6 * blocks(width) * blocks(height) + 2048);
+  unsigned long size = bytes.size();
   JpegErrors errors{};
-  if (!compress(width, height, rgb.data(), quality, &bytes, &size, errors))
+  if (!compress(width, height, rgb.data(), quality, bytes.data(), size, errors))
     throw RunError(std::string("a picture could not be compressed: ") + errors.message);
-  return {bytes, bytes + size};
+  bytes.resize(size);
+  return bytes;
 }
 
 }  // namespace supple
