@@ -16,10 +16,10 @@ PROGRAM = os.environ["SUPPLE_PROGRAM"]
 class Page:
     """One page of a session: it steers unless `watches`."""
 
-    def __init__(self, host, port, base, watches=False):
+    def __init__(self, host, port, base, watches=False, writer=None):
         self.host, self.port, self.base = host, port, base
         self.threads = threading.local()
-        self.writer = None if watches else self.ask("POST", "claim")[1]["writer"]
+        self.writer = None if watches else writer or self.ask("POST", "claim")[1]["writer"]
         self.events, self.changed = [], threading.Condition()
         self.stream = http.client.HTTPConnection(host, port, timeout=60)
         self.stream.request("GET", base + "events" + (f"?writer={self.writer}" if self.writer else ""))
@@ -71,6 +71,14 @@ class Page:
                 assert self.changed.wait(end - time.monotonic()), f"no such event '{name}' came"
         return self.last(name)
 
+    def wait_state(self, holds, timeout=30):
+        """Waits until the newest state is such a one. Returns it."""
+        end = time.monotonic() + timeout
+        with self.changed:
+            while not (self.last("state") and holds(self.last("state"))):
+                assert self.changed.wait(end - time.monotonic()), self.last("state")
+        return self.last("state")
+
     def wait_frames(self, frames, timeout=30):
         """Waits until the film has come to so many frames."""
         end = time.monotonic() + timeout
@@ -100,10 +108,12 @@ class Page:
 class Session:
     """A running `supple live`, and its first page."""
 
-    def __init__(self, folder, *arguments, claims=True):
+    def __init__(self, folder, *arguments, claims=True, text=None):
         self.folder = folder
         self.process = subprocess.Popen([PROGRAM, "live", *arguments, "--size", "160x90"], cwd=folder,
-                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.process.stdin.write(text or "")
+        self.process.stdin.close()
         self.line = self.process.stdout.readline()
         address = re.search(r"http://([^:]+):(\d+)(/[0-9a-f]{32}/)", self.line)
         assert address, self.line + self.process.stderr.read()
@@ -117,8 +127,8 @@ class Session:
         """Ends the program. Returns its exit status, standard output and standard error."""
         if self.process.poll() is None:
             self.process.send_signal(how)
-        out, err = self.process.communicate(timeout=60)
-        return self.process.returncode, self.line + out, err
+        out, err = self.process.stdout.read(), self.process.stderr.read()
+        return self.process.wait(timeout=60), self.line + out, err
 
 
 @pytest.fixture
@@ -133,7 +143,9 @@ def live(tmp_path):
     yield start
     for session in started:
         session.process.kill()
-        session.process.communicate()
+        session.process.wait()
+        session.process.stdout.close()
+        session.process.stderr.close()
 
 
 def replay(file, *options):

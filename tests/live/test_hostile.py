@@ -145,3 +145,27 @@ def test_a_hand_that_has_gone_holds_nothing(session):
     while (watcher.last("state") or watcher.last("hello")["state"])["grabbed"] is not None:
         assert time.monotonic() < end
         time.sleep(0.1)
+
+
+def test_connections_that_ask_for_nothing_are_closed(session):
+    trickle = socket.create_connection((session.host, session.port))
+    trickle.settimeout(1)
+    begin = time.monotonic()
+    try:
+        while time.monotonic() < begin + 20:  # a byte now and then would keep it open for ever
+            trickle.sendall(b"G")
+            try:
+                if trickle.recv(1) == b"":
+                    break
+            except TimeoutError:
+                continue
+    except OSError:
+        pass
+    assert time.monotonic() < begin + 15
+    assert_alive(session)
+
+
+def test_the_replay_can_be_asked_for_once_a_second(session):
+    statuses = [session.page.ask("GET", "replay")[0] for _ in range(30)]
+    assert statuses.count(200) >= 5 and statuses.count(429) >= 20
+    session.page.do(do="pause")  # commands have a limit of their own

@@ -1,12 +1,14 @@
 """Sessions of `supple live` as a page has them: what is done is a replay with the same bits, what is wrong is refused."""
 import os
 import random
+import shutil
 import signal
+import subprocess
 import time
 
 import pytest
 
-from conftest import assert_same_bits, replay
+from conftest import PROGRAM, Page, assert_same_bits, replay
 
 SCENE = """title = "A bar and a cube"
 [[body]]
@@ -48,7 +50,7 @@ def test_everything_that_a_page_does_is_a_replay(live, scene, tmp_path):
     page.do(do="drop")
     page.do(do="set", path="solver.method", value='"newton"')
     page.do(do="pause")
-    paused = page.wait_for("state", lambda state: state["paused"])["frame"]
+    paused = page.wait_state(lambda state: state["paused"])["frame"]
     page.do(do="step")
     page.do(do="step")
     page.wait_frames(paused + 2)
@@ -59,7 +61,7 @@ def test_everything_that_a_page_does_is_a_replay(live, scene, tmp_path):
     page.wait_frames(paused + 20)
     page.do(do="set", path="solver.method", value="quasi-newton")
     page.do(do="go", frame=20)
-    assert page.wait_for("state", lambda state: state["frame"] == 20)
+    assert page.wait_state(lambda state: state["frame"] == 20)
     page.grab_something()
     page.do(do="drag", x=0.6, y=0.4)
     time.sleep(0.4)
@@ -232,7 +234,7 @@ def test_what_is_left_behind_is_kept_beside(live, scene, tmp_path):
     session.page.wait_frames(10)
     session.page.do(do="restart")
     session.page.do(do="set", path="gravity", value="[0, -8, 0]")
-    session.page.wait_for("state", lambda state: state["frame"] == 0)
+    session.page.wait_state(lambda state: state["frame"] < 4)
     time.sleep(0.3)
     status, out, err = session.end()
     assert status == 0 and "replay   kept.toml" in err
@@ -265,10 +267,151 @@ handles = [{ name = "hook", select = { box = [[0, 0, 0], [0.1, 1, 1]] } }]
     page.do(do="set", path="gravity", value="[0, -1e6, 0]")
     said = page.wait_for("say", lambda say: "failed" in say["text"])["text"]
     assert "body 'cube' failed" in said and "back at its last whole frame" in said
-    assert page.wait_for("state", lambda state: state["paused"])["frame"] >= 5
+    assert page.wait_state(lambda state: state["paused"])["frame"] >= 5
     page.do(do="go", frame=5)
     page.do(do="set", path="gravity", value="[0, -5, 0]")
     page.do(do="step")
     page.wait_for("frame", lambda frame: frame["frame"] == 6)
     time.sleep(0.2)
     assert_same_bits(page.save(tmp_path))
+
+
+def test_a_grab_may_be_let_go_twice(live, scene, tmp_path):
+    page = live(scene, "--paused").page
+    grabbed = page.grab_something()
+    page.do(do="drop", pin=True)
+    assert page.wait_state(lambda state: state["pins"])["pins"] == [{"body": grabbed["body"], "name": "hand-1"}]
+    for _ in range(2):
+        page.do(do="release", body=grabbed["body"], name="hand-1")
+    assert page.state()["pins"] == []
+    for _ in range(3):
+        page.do(do="step")
+    page.wait_frames(3)
+    assert page.command(do="release", body=grabbed["body"], name="hand-1")[0] == 422
+    assert_same_bits(page.save(tmp_path))
+
+
+def test_pins_come_back_where_they_held(live, scene, tmp_path):
+    page = live(scene).page
+    page.wait_frames(3)
+    body = page.grab_something()["body"]
+    page.wait_frames(8)
+    page.do(do="drop", pin=True)
+    pinned = page.state()["frame"]
+    page.wait_frames(pinned + 10)
+    page.do(do="release", body=body, name="hand-1")
+    page.wait_frames(pinned + 20)
+    page.do(do="go", frame=pinned + 5)
+    page.wait_state(lambda state: state["frame"] == pinned + 5 and state["pins"][0]["name"] == "hand-1")
+    page.do(do="go", frame=4)  # the hand held then, but was no pin
+    page.wait_state(lambda state: state["frame"] == 4 and not state["pins"])
+    page.wait_frames(8)
+    assert_same_bits(page.save(tmp_path))
+
+
+def test_a_look_that_is_refused_changes_nothing(live, scene, tmp_path):
+    subprocess.run([PROGRAM, "render", "scene.toml", "--no-images", "--frames", "6", "--out", "ghost"], cwd=tmp_path,
+                   check=True, capture_output=True)
+    page = live(scene, "--set", "look.ghost=ghost").page
+    page.wait_frames(12)  # beyond the end of the run that is shown
+    shutil.rmtree(tmp_path / "ghost")
+    assert page.command(do="show", wireframe=True)[0] == 422
+    frame = page.last("frame")["frame"]
+    page.wait_frames(frame + 5)
+
+
+def test_budgets_of_an_earlier_session_end_with_the_first_edit(live, scene, tmp_path):
+    page = live(scene, "--set", "solver.budget_ms=0.05", "--set", "solver.iterations=200").page
+    page.wait_frames(12)
+    first = page.save(tmp_path)
+    first = first.rename(first.with_name("first.toml"))
+    assert "cuts" in first.read_text()
+    page = live(str(first)).page
+    page.wait_frames(4)
+    page.do(do="set", path="solver.budget_ms", value="0")
+    page.do(do="set", path="solver.iterations", value="11")
+    changed = page.state()["frame"]
+    page.wait_frames(changed + 8)
+    assert page.last("frame")["iterations"] >= 22  # of both bodies
+    page.do(do="go", frame=changed + 3)
+    page.wait_frames(changed + 6)
+    assert not any(event == "say" and "other bits" in say["text"] for event, say in page.events)
+    rows = assert_same_bits(page.save(tmp_path))
+    second = page.save(tmp_path)
+    second = second.rename(second.with_name("second.toml"))
+    page = live(str(second)).page  # budgets that are no more stay away
+    page.wait_frames(len(rows) + 3)
+    page.do(do="set", path="gravity", value="[0, -3, 0]")
+    page.wait_frames(len(rows) + 6)
+    assert_same_bits(page.save(tmp_path))
+
+
+def test_keeping_the_rate_is_repeated(live, scene, tmp_path):
+    page = live(scene, "--set", "solver.iterations=3000").page
+    page.wait_frames(5)
+    page.do(do="keep_rate", on=True)
+    page.wait_frames(40)
+    page.do(do="keep_rate", on=False)
+    page.do(do="set", path="solver.iterations", value="10")
+    page.wait_frames(45)
+    rows = assert_same_bits(page.save(tmp_path))
+    assert any(any(cut[0] >= 0 for cut in body.get("budget_cuts", [])) for row in rows for body in row["bodies"])
+
+
+def test_no_file_of_the_user_is_written_over(live, scene, tmp_path):
+    for name in ["kept.toml", "kept-scene.toml"]:
+        (tmp_path / name).write_text("mine")
+        refused = subprocess.run([PROGRAM, "live", "scene.toml", "--record-replay", "kept.toml"], cwd=tmp_path,
+                                 capture_output=True, text=True)
+        assert refused.returncode == 2 and f"{name} is there already" in refused.stderr
+        assert (tmp_path / name).read_text() == "mine"
+        (tmp_path / name).unlink()
+
+
+def test_a_past_that_is_left_keeps_its_scene(live, tmp_path):
+    process = live("-", "--record-replay", "kept.toml", text=SCENE)
+    page = process.page
+    body = page.grab_something()["body"]
+    page.wait_frames(5)
+    page.do(do="set", path=f"body.{body}.density", value="500")
+    page.wait_frames(10)
+    page.do(do="restart")
+    page.grab_something()
+    page.wait_state(lambda state: state["frame"] < 4)
+    page.wait_frames(6)
+    assert process.end()[0] == 0
+    assert_same_bits(tmp_path / "kept-1.toml")
+    assert_same_bits(tmp_path / "kept.toml")
+
+
+def test_a_replay_that_cannot_be_kept_is_told(live, scene, tmp_path):
+    (tmp_path / "folder").mkdir()
+    session = live(scene, "--record-replay", "folder/kept.toml")
+    session.page.do(do="set", path="gravity", value="[0, -4, 0]")
+    session.page.wait_frames(2)
+    shutil.rmtree(tmp_path / "folder")
+    session.page.wait_for("words", lambda words: any("the replay is not kept" in word for word in words))
+    status, out, err = session.end()
+    assert status == 1 and "the replay is not kept" in err and "supple replay films it" not in err
+
+
+def test_a_copy_of_the_page_takes_over(live, scene):
+    session = live(scene)
+    page = session.page
+    page.wait_for("hello")
+    copy = Page(session.host, session.port, session.base, writer=page.writer)
+    copy.wait_for("hello")
+    page.wait_for("moved")
+    page.listening.join(timeout=10)
+    assert not page.listening.is_alive()
+    copy.do(do="pause")
+
+
+def test_an_address_that_cannot_be_listened_to_is_told(live, scene, tmp_path):
+    session = live(scene)
+    for options, words in [(["--port", str(session.port)], [f"--port {session.port}", "in use"]),
+                           (["--listen", "8.8.8.8"], ["--listen 8.8.8.8", "cannot be listened to"]),
+                           (["--listen", "localhost"], ["--listen localhost", "in numbers"]),
+                           (["--size", "12"], ["--size 12", "WIDTHxHEIGHT"])]:
+        refused = subprocess.run([PROGRAM, "live", "scene.toml", *options], cwd=tmp_path, capture_output=True, text=True)
+        assert refused.returncode == 2 and all(word in refused.stderr for word in words), refused.stderr
