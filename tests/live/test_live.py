@@ -320,6 +320,19 @@ def test_a_look_that_is_refused_changes_nothing(live, scene, tmp_path):
     page.wait_frames(frame + 5)
 
 
+def test_hands_that_are_no_more_leave_the_picture(live, scene, tmp_path):
+    page = live(scene).page
+    page.wait_frames(3)
+    page.grab_something()
+    page.wait_frames(6)
+    page.do(do="show", field="stretch")  # the picture now has the hand as a support
+    page.wait_frames(10)
+    page.do(do="go", frame=2)
+    page.grab_something()
+    page.wait_frames(8)
+    assert_same_bits(page.save(tmp_path))
+
+
 def test_budgets_of_an_earlier_session_end_with_the_first_edit(live, scene, tmp_path):
     page = live(scene, "--set", "solver.budget_ms=0.05", "--set", "solver.iterations=200").page
     page.wait_frames(12)

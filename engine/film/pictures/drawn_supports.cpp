@@ -1,5 +1,7 @@
 #include "film/pictures/drawn_supports.h"
 
+#include <utility>
+
 namespace supple {
 namespace {
 
@@ -22,17 +24,25 @@ DrawMesh mesh_of(const TriMesh& surface) {
 
 DrawnSupports::DrawnSupports(const std::vector<Body>& bodies, Stage& stage) : bodies_(bodies) {
   for (const Body& body : bodies) {
-    supports_.push_back(supports_of(body));
-    for (const Support& one : supports_.back()) stage.meshes.push_back(mesh_of(one.surface));
+    std::vector<Drawn>& drawn = supports_.emplace_back();
+    for (Support& one : supports_of(body)) {
+      stage.meshes.push_back(mesh_of(one.surface));
+      std::vector<std::int32_t> held = body.description.handles[one.handle].vertices;
+      drawn.push_back({std::move(one), std::move(held)});
+    }
   }
 }
 
 void DrawnSupports::add_to(DrawList& list, const SceneDef& scene, const FramePose& pose) const {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const std::vector<HandleDef>& handles = scene.bodies[b].handles;
-    for (const Support& one : supports_[b]) {
-      const Eigen::Isometry3d motion = motion_of_held(bodies_[b], one.handle, *pose.motion[b]);
-      const bool holds = handles[one.handle].holds_at(pose.time);
+    const std::vector<Handle>& now = bodies_[b].description.handles;
+    for (const auto& [one, held] : supports_[b]) {
+      // A handle that was grabbed while the film runs is no more where the film went back.
+      const bool is_there = one.handle < handles.size() && now[one.handle].vertices == held;
+      const Eigen::Isometry3d motion = is_there ? motion_of_held(bodies_[b], one.handle, *pose.motion[b])
+                                                : Eigen::Isometry3d(Eigen::Isometry3d::Identity());
+      const bool holds = is_there && handles[one.handle].holds_at(pose.time);
       std::vector<float> points;
       for (Eigen::Index v = 0; v < one.surface.points.rows(); ++v) {
         // A mesh of a single point covers nothing.

@@ -19,8 +19,12 @@ class DrawnSupports {
   void add_to(DrawList& list, const SceneDef& scene, const FramePose& pose) const;
 
  private:
+  struct Drawn {
+    Support support;
+    std::vector<std::int32_t> held;  // the vertices of its handle
+  };
   const std::vector<Body>& bodies_;
-  std::vector<std::vector<Support>> supports_;  // by body
+  std::vector<std::vector<Drawn>> supports_;  // by body
 };
 
 }  // namespace supple
