@@ -11,7 +11,6 @@
 #include "base/frame_time.h"
 #include "base/interrupts.h"
 #include "base/text.h"
-#include "live/control_json.h"
 #include "output/files/json_text.h"
 
 namespace supple {
@@ -58,11 +57,12 @@ LiveSession::LiveSession(LiveDesk& desk, World& world, FrameLoop& loop, ReplayKe
       world_(world),
       loop_(loop),
       keeper_(keeper),
+      events_(desk.events, world),
       timeline_(world),
-      paused_(starts_paused),
       saved_(std::make_shared<std::atomic<std::size_t>>(0)) {
+  state_.paused = starts_paused;
   draw_on_new_stage();
-  tell_controls();
+  events_.tell_controls();
   tell_words();
   tell_state();
 }
@@ -81,7 +81,7 @@ std::string LiveSession::play() {
     keeper_.keep(notes());
     const std::string undrawn = desk_.pictures.error();
     if (end == FilmEnd::interrupted || !undrawn.empty()) {
-      desk_.events.keep("end", json_text(Json{{"text", undrawn.empty() ? "the program has ended" : undrawn}}));
+      events_.tell_end(undrawn.empty() ? "the program has ended" : undrawn);
       return undrawn;
     }
     recover(message);
@@ -90,9 +90,9 @@ std::string LiveSession::play() {
 
 // Goes back to the last whole frame after a step that failed, without what was done since.
 void LiveSession::recover(const std::string& message) {
-  paused_ = true;
+  state_.paused = true;
   go(timeline_.frames());
-  say(message + "; the film is back at its last whole frame, without what was done after it");
+  events_.say(message + "; the film is back at its last whole frame, without what was done after it");
 }
 
 std::optional<FilmEnd> LiveSession::ends() {
@@ -100,11 +100,11 @@ std::optional<FilmEnd> LiveSession::ends() {
     if (interrupted()) return FilmEnd::interrupted;
     serve_commands();
     if (!desk_.pictures.error().empty()) return FilmEnd::failed;
-    if (desk_.pictures.has_own_view() != told_own_view_) tell_state();
+    if (desk_.pictures.has_own_view() != state_.own_view) tell_state();
     if (keeper_.error() != told_error_) tell_words();
     const Clock::time_point now = Clock::now();
-    if (std::exchange(steps_once_, false) || (!paused_ && now >= due_)) break;
-    desk_.mailbox.wait_until(paused_ ? now + between_looks : std::min(due_, now + between_looks));
+    if (std::exchange(steps_once_, false) || (!state_.paused && now >= due_)) break;
+    desk_.mailbox.wait_until(state_.paused ? now + between_looks : std::min(due_, now + between_looks));
   }
   const std::chrono::duration<double, std::milli> period(period_ms());
   const auto ticks = std::chrono::duration_cast<Clock::duration>(period);
@@ -121,21 +121,21 @@ void LiveSession::take(FrameRow row) {
   if (frame_ms_.size() > frames_of_budget) frame_ms_.pop_front();
   ended_.push_back(now);
   if (ended_.size() > frames_of_rate) ended_.pop_front();
-  tell_frame(row);
+  events_.tell_frame(row, measured_rate(), desk_.pictures.picture_ms());
   tally_.add(row);
   timeline_.add(row, world_);
   const int frames = world_.frames();
   if (frames % frames_between_words == 0) {
     tell_words();
-    if (!world_.script().at_work(frames).empty()) tell_controls();
+    if (!world_.script().at_work(frames).empty()) events_.tell_controls();
   }
-  if (keeps_rate_ && frames % int(frames_of_budget) == 0) adjust_budget();
+  if (state_.keeps_rate && frames % int(frames_of_budget) == 0) adjust_budget();
   if (keeper_.wants_notes()) keeper_.keep(notes());
 }
 
 void LiveSession::serve_commands() {
   for (const PostedCommand& posted : desk_.mailbox.take()) serve(posted);
-  if (std::exchange(controls_changed_, false)) tell_controls();
+  if (std::exchange(controls_changed_, false)) events_.tell_controls();
 }
 
 void LiveSession::serve(const PostedCommand& posted) {
@@ -174,15 +174,15 @@ void LiveSession::note(TimedEdit edit) {
 LiveSession::Json LiveSession::carry_out(const Command& command) {
   switch (command.kind) {
     case CommandKind::set: change(command.path, command.value, command.over); break;
-    case CommandKind::pause: paused_ = true; break;
+    case CommandKind::pause: state_.paused = true; break;
     case CommandKind::run:
-      paused_ = false;
+      state_.paused = false;
       due_ = Clock::now();
       ended_.clear();
       break;
-    case CommandKind::step: paused_ = steps_once_ = true; break;
+    case CommandKind::step: state_.paused = steps_once_ = true; break;
     case CommandKind::speed:
-      speed_ = command.factor;
+      state_.speed = command.factor;
       due_ = Clock::now();
       ended_.clear();
       break;
@@ -268,7 +268,7 @@ void LiveSession::move_to_pointer() {
   try {
     change(fmt::format("body.{}.handles.{}.keys", grabbed_->body, grabbed_->name), keys_text(*keys), 0);
   } catch (const InputError& error) {
-    say(message_of(error));
+    events_.say(message_of(error));
   }
 }
 
@@ -340,9 +340,9 @@ void LiveSession::go(int frames) {
   *saved_ = std::min(saved_->load(), timeline_.edits());
   loop_.go_to(world_.state(), FrameRows());
   if (!failure.empty()) {
-    say(fmt::format("{}; the film is back at frame {}", failure, world_.frames()));
+    events_.say(fmt::format("{}; the film is back at frame {}", failure, world_.frames()));
   } else if (frames > 0 && world_.frames() == frames && world_.hash() != hash) {
-    say(fmt::format("frame {} came out with other bits than before", frames));
+    events_.say(fmt::format("frame {} came out with other bits than before", frames));
   }
   std::erase_if(pins_, [this](const Pin& pin) { return pin.frames > world_.frames(); });
   for (const LiveGrab& grab : holding())
@@ -368,13 +368,13 @@ void LiveSession::draw_on_new_stage() {
 }
 
 void LiveSession::show(const Command& command) {
-  const std::string field = command.field.value_or(field_);
-  const bool wireframe = command.wireframe.value_or(wireframe_), marks = command.marks.value_or(marks_);
+  const std::string field = command.field.value_or(state_.field);
+  const bool wireframe = command.wireframe.value_or(state_.wireframe), marks = command.marks.value_or(state_.marks);
   loop_.change_look({fmt::format("field.quantity={}", field), fmt::format("look.wireframe={}", wireframe),
                      fmt::format("look.marks={}", marks)});
-  field_ = field;
-  wireframe_ = wireframe;
-  marks_ = marks;
+  state_.field = field;
+  state_.wireframe = wireframe;
+  state_.marks = marks;
   draw_on_new_stage();
 }
 
@@ -384,13 +384,13 @@ void LiveSession::keep_view() {
          fmt::format("{{ position = {}, target = {}, fov_deg = {} }}", vector_text(camera.eye),
                      vector_text(camera.target), camera.fov_deg),
          0);
-  say("the film of the replay has this view from here on");
+  events_.say("the film of the replay has this view from here on");
 }
 
 // Makes steps end when their share of a frame's time is over, or ends this. All budgets of the scene are set: its own,
 // and those of bodies that have one.
 void LiveSession::keep_rate(bool on) {
-  if (on == keeps_rate_) return;
+  if (on == state_.keeps_rate) return;
   if (on) {
     budgets_before_.clear();
     for (const LiveKey& key : world_.script().live(world_.frames()))
@@ -401,7 +401,7 @@ void LiveSession::keep_rate(bool on) {
   } else {
     for (const auto& [path, value] : budgets_before_) change(path, value, 0);
   }
-  keeps_rate_ = on;
+  state_.keeps_rate = on;
 }
 
 void LiveSession::set_budgets(double ms) {
@@ -426,93 +426,19 @@ ReplayNotes LiveSession::notes() const { return {timeline_.frames(), world_.scri
 double LiveSession::measured_rate() const {
   if (ended_.size() < 2) return 1;
   const std::chrono::duration<double> took = ended_.back() - ended_.front();
-  return double(ended_.size() - 1) / (world_.scene().fps * speed_ * took.count());
-}
-
-void LiveSession::tell_scene(const std::string& record) {
-  const SceneDef& scene = world_.script().scene();
-  Json bodies = Json::array(), fields = Json::array();
-  for (const Body& body : world_.bodies()) {
-    const TetMesh& mesh = body.description.mesh;
-    bodies.push_back({{"name", body.def.name},
-                      {"vertices", mesh.rest.rows()},
-                      {"elements", mesh.tets.rows() + std::ssize(body.description.springs)}});
-  }
-  for (const std::string& name : all_names<FieldQuantity>())
-    if (name != name_of(FieldQuantity::distance)) fields.push_back(name);  // it needs another run
-  const std::pair<const char*, Json> all[] = {{"title", scene.title.empty() ? scene.name : scene.title},
-                                              {"scene", scene.name},
-                                              {"fps", scene.fps},
-                                              {"width", scene.output.width},
-                                              {"height", scene.output.height},
-                                              {"bodies", bodies},
-                                              {"fields", fields},
-                                              {"record", record.empty() ? Json(nullptr) : Json(record)}};
-  for (const auto& [name, value] : all) desk_.events.keep_silently(name, json_text(value));
+  return double(ended_.size() - 1) / (world_.scene().fps * state_.speed * took.count());
 }
 
 bool LiveSession::has_unsaved_edits() const { return timeline_.edits() > *saved_; }
 
-void LiveSession::tell_frame(const FrameRow& row) {
-  double error = 0, motion = 0;
-  int iterations = 0;
-  bool unsolved = false;
-  for (const BodyRow& body : row.bodies) {
-    error = std::max(error, body.error_estimate);
-    motion = std::max(motion, body.motion_estimate);
-    iterations += body.iterations;
-    unsolved = unsolved || body.unsolved;
-  }
-  const Json json = {{"frame", row.frame + 1},
-                     {"time", row.time_s},
-                     {"ms", row.step_ms},
-                     {"change_ms", row.change_ms.value_or(0)},
-                     {"draw_ms", row.draw_ms.value_or(0) + desk_.pictures.picture_ms()},
-                     {"iterations", iterations},
-                     {"error", error},
-                     {"motion", motion},
-                     {"rate", measured_rate()},
-                     {"unsolved", unsolved}};
-  desk_.events.add("frame", json_text(json));
-}
-
 void LiveSession::tell_state() {
-  told_own_view_ = desk_.pictures.has_own_view();
-  Json pins = Json::array();
-  for (const LiveGrab& grab : holding()) {
-    if (is_pinned(grab) && !is_pending(grab)) pins.push_back({{"body", grab.body}, {"name", grab.name}});
-  }
-  const Json json = {{"paused", paused_},
-                     {"speed", speed_},
-                     {"frame", world_.frames()},
-                     {"first", 0},
-                     {"last", world_.frames()},
-                     {"field", field_},
-                     {"wireframe", wireframe_},
-                     {"marks", marks_},
-                     {"keeps_rate", keeps_rate_},
-                     {"own_view", told_own_view_},
-                     {"pins", pins},
-                     {"grabbed", grabbed_ ? Json(grabbed_->name) : Json(nullptr)}};
-  desk_.events.keep("state", json_text(json));
-}
-
-// Tells the values that have changed; or all, where others can change now.
-void LiveSession::tell_controls() {
-  std::vector<LiveKey> now = world_.script().live(world_.frames());
-  for (const LiveGrab& grab : world_.script().edits().grabs) {  // the page has other ways to move these
-    const std::string prefix = fmt::format("body.{}.handles.{}.", grab.body, grab.name);
-    std::erase_if(now, [&prefix](const LiveKey& key) { return key.key.path.starts_with(prefix); });
-  }
-  const auto path_of = [](const LiveKey& key) { return key.key.path; };
-  const bool same_keys = std::ranges::equal(now, told_controls_, {}, path_of, path_of);
-  desk_.events.keep_silently("controls", json_text(controls_json(now)));
-  for (std::size_t i = 0; i < now.size() && same_keys; ++i) {
-    if (now[i].key.value != told_controls_[i].key.value)
-      desk_.events.add("value", json_text(Json{{"path", now[i].key.path}, {"value", now[i].key.value}}));
-  }
-  if (!same_keys) desk_.events.add("controls", json_text(controls_json(now)));
-  told_controls_ = std::move(now);
+  state_.frames = world_.frames();
+  state_.own_view = desk_.pictures.has_own_view();
+  state_.grabbed = grabbed_ ? grabbed_->name : "";
+  state_.pins.clear();
+  for (const LiveGrab& grab : holding())
+    if (is_pinned(grab) && !is_pending(grab)) state_.pins.push_back(grab);
+  events_.tell_state(state_);
 }
 
 void LiveSession::tell_words() {
@@ -520,12 +446,7 @@ void LiveSession::tell_words() {
   if (const std::string unsolved = tally_.unsolved_text(); !unsolved.empty()) words.push_back(unsolved);
   told_error_ = keeper_.error();
   if (!told_error_.empty()) words.push_back(told_error_);
-  const std::string text = json_text(Json(words));
-  if (text == told_words_) return;
-  told_words_ = text;
-  desk_.events.keep("words", text);
+  events_.tell_words(words);
 }
-
-void LiveSession::say(const std::string& text) { desk_.events.add("say", json_text(Json{{"text", text}})); }
 
 }  // namespace supple

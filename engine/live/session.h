@@ -20,6 +20,7 @@
 #include "live/grabbed_way.h"
 #include "live/live_pictures.h"
 #include "live/mailbox.h"
+#include "live/page_events.h"
 #include "live/pick.h"
 #include "live/replay_keeper.h"
 #include "live/timeline.h"
@@ -50,7 +51,7 @@ class LiveSession : public FrameGuide {
   void take(FrameRow row) override;
 
   // Tells pages what is played. record: the file of the replay; empty: none.
-  void tell_scene(const std::string& record);
+  void tell_scene(const std::string& record) { events_.tell_scene(record); }
   // Tells whether something was done that no replay has that was asked for since.
   bool has_unsaved_edits() const;
 
@@ -87,22 +88,20 @@ class LiveSession : public FrameGuide {
   void recover(const std::string& message);
   void draw_on_new_stage();
   ReplayNotes notes() const;
-  double period_ms() const { return 1000 / (world_.scene().fps * speed_); }
+  double period_ms() const { return 1000 / (world_.scene().fps * state_.speed); }
   double measured_rate() const;
   std::string name_for_grab(const Body& body) const;
   std::vector<LiveGrab> holding() const;
   bool is_pending(const LiveGrab& grab) const;
   bool is_pinned(const LiveGrab& grab) const;
   void tell_state();
-  void tell_controls();
   void tell_words();
-  void tell_frame(const FrameRow& row);
-  void say(const std::string& text);
 
   LiveDesk& desk_;
   World& world_;
   FrameLoop& loop_;
   ReplayKeeper& keeper_;
+  PageEvents events_;
   Timeline timeline_;
   RowTally tally_;  // of the frames since the film last went back
 
@@ -110,26 +109,19 @@ class LiveSession : public FrameGuide {
   std::vector<Release> pending_;      // grabs that were dropped before they took hold
   std::vector<Pin> pins_;             // grabs that hold without a pointer, or did
 
-  bool paused_, steps_once_ = false;
-  double speed_ = 1;
+  PageState state_;  // but for what tell_state() finds
+  bool steps_once_ = false;
   Clock::time_point due_;                // when the next frame may begin
   Clock::time_point begun_;              // when the last frame began
   std::deque<Clock::time_point> ended_;  // when the last frames ended, since the film last began to run
   std::deque<double> frame_ms_;          // times of the last frames, without waiting [ms]
 
-  bool keeps_rate_ = false;
   double budget_ms_ = 0;                                             // that keep_rate() has set
   std::vector<std::pair<std::string, std::string>> budgets_before_;  // the paths of budgets, and their values before it
 
-  std::string field_ = "none";  // that pictures show
-  bool wireframe_ = false, marks_ = false;
-
   std::shared_ptr<std::atomic<std::size_t>> saved_;  // number of edits in the last replay that was asked for
   bool controls_changed_ = false;
-  bool told_own_view_ = false;
   std::string told_error_;  // of the keeper
-  std::string told_words_;
-  std::vector<LiveKey> told_controls_;
 };
 
 }  // namespace supple
