@@ -430,15 +430,13 @@ function press_enter() {
   return true;
 }
 
-// Pins what is held now; without that the key switches the button.
+// Pins what is held now. The button does the same for hands without a key.
 function pin_now() {
   if (crosshair.grab) {
     end_crosshair_grab(true);
   } else if (gesture && gesture.kind === "grab" && pointers.size > 0) {
     end_grab(true);
     gesture = { kind: "done" };
-  } else {
-    toggle_pin();
   }
 }
 
@@ -559,6 +557,7 @@ function download(name, text) {
 // Returns whether the replay was saved.
 async function save() {
   let saved;
+  remark("Saving …", true);
   try {
     const answer = await fetch("./replay");
     if (!answer.ok) throw new Refusal(answer.status, await error_text(answer));
@@ -571,7 +570,9 @@ async function save() {
   if (saved.scene) download(saved.scene_name, saved.scene);
   page.unsaved = false;
   const both = `Saved two files: the replay ${saved.name} and its scene ${saved.scene_name}. Keep them together.`;
-  remark(saved.scene ? both : `Saved ${saved.name}.`);
+  const film = ` The film of it: supple replay ${saved.name}.`;
+  const view = page.state.own_view ? " It has the scene's camera, unless View, Keep this view for the film is pressed." : "";
+  remark((saved.scene ? both : `Saved ${saved.name}.`) + film + view, true);
   return true;
 }
 
@@ -1082,8 +1083,9 @@ function show_pace() {
   const recent = page.history.slice(-15);
   const rate = recent.reduce((sum, frame) => sum + frame.rate, 0) / recent.length;
   const asked = speed === 1 ? "Real time" : `${short_number(speed)} of real time, as asked`;
-  const slow = `${short_number(rate * speed, 2)} of real time: ` +
-    (keeps_rate ? "steps that end early take too long, too" : "every frame is simulated, so the film is slow");
+  const wanted = speed === 1 ? "" : `, ${short_number(speed)} was asked for`;
+  const slow = `${short_number(rate * speed, 2)} of real time${wanted}: ` +
+    (keeps_rate ? "steps that end early take too long, too" : "every frame is simulated");
   write(by_id("pace"), paused ? "Paused" : recent.length === 0 || rate >= 0.95 ? asked : slow);
 }
 
@@ -1173,7 +1175,7 @@ let end_events = () => {};  // ends the events' connection
 
 function show_connection() {
   const ended = page.ended && `The simulation has ended: ${page.ended}`;
-  const text = lost ? `${ended} ${unreachable} Trying again …`.trim() : ended;
+  const text = ended || !lost ? ended : `${unreachable} Trying again …`;
   write(by_id("connection"), text);
   by_id("connection").classList.toggle("warning", text !== "");
 }
@@ -1201,6 +1203,9 @@ async function claim() {
   if (answer.ok) return keep_writer((await answer.json()).writer);
   if (answer.status !== 409) throw new Refusal(answer.status, await error_text(answer));
   page.wants_to_steer = false;
+  if (!page.hello || page.hello.steered) return;
+  remark("The page that steered may come back for some seconds; then this one steers.");
+  setTimeout(try_to_steer, 1500);
 }
 
 // Follows the events until the connection ends. Returns "lost" when it stood, "unreachable" when it never did, and

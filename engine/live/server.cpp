@@ -366,6 +366,7 @@ MHD_Result LiveServer::Connections::serve_events(MHD_Connection* connection, con
     steering_.connected(exchange.writer);
     tell_whether_steered(true);
   }
+  desk_.is_followed = true;
   const std::lock_guard lock(mutex_);
   if (steers) end_other_streams(exchange.writer);
   streams_.push_back(stream.release());  // close_stream() frees it

@@ -12,6 +12,7 @@
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "output/files/json_text.h"
+#include "scene/building/warnings.h"
 
 namespace supple {
 namespace {
@@ -27,9 +28,15 @@ constexpr double tolerance = 1.0 / 250;  // of a grab's way, over the picture's 
 constexpr const char* budget_path = "solver.budget_ms";
 constexpr double furthest = 0.3;  // that a grab moves in a frame, over the body's size
 
+// Returns what is wrong, as short as a page can show it. A value that only goes together with others is told to be one:
+// the list of what is wrong beside it is for the files of replays.
 std::string message_of(const InputError& error) {
   std::string text;
   for (const Problem& problem : error.problems()) text += (text.empty() ? "" : "; ") + problem.message;
+  constexpr std::string_view together = "does not go with what stands beside it";
+  if (const std::size_t at = text.find(together); at != std::string::npos)
+    text =
+        text.substr(0, at + together.size()) + ": it wants other values than there are, which a replay's file can give";
   return text;
 }
 
@@ -91,8 +98,11 @@ std::string LiveSession::play() {
 // Goes back to the last whole frame after a step that failed, without what was done since.
 void LiveSession::recover(const std::string& message) {
   state_.paused = true;
+  failure_ = message +
+             "; the film is back at its last whole frame, without what was done after it. Where that is spoilt "
+             "already, go back further";
   go(timeline_.frames());
-  events_.say(message + "; the film is back at its last whole frame, without what was done after it");
+  events_.say(failure_);
 }
 
 std::optional<FilmEnd> LiveSession::ends() {
@@ -103,8 +113,9 @@ std::optional<FilmEnd> LiveSession::ends() {
     if (desk_.pictures.has_own_view() != state_.own_view) tell_state();
     if (keeper_.error() != told_error_) tell_words();
     const Clock::time_point now = Clock::now();
-    if (std::exchange(steps_once_, false) || (!state_.paused && now >= due_)) break;
-    desk_.mailbox.wait_until(state_.paused ? now + between_looks : std::min(due_, now + between_looks));
+    const bool runs = !state_.paused && desk_.is_followed && now >= due_;
+    if (std::exchange(steps_once_, false) || runs) break;
+    desk_.mailbox.wait_until(now < due_ && !state_.paused ? std::min(due_, now + between_looks) : now + between_looks);
   }
   const std::chrono::duration<double, std::milli> period(period_ms());
   const auto ticks = std::chrono::duration_cast<Clock::duration>(period);
@@ -123,6 +134,7 @@ void LiveSession::take(FrameRow row) {
   if (ended_.size() > frames_of_rate) ended_.pop_front();
   events_.tell_frame(row, measured_rate(), desk_.pictures.picture_ms());
   tally_.add(row);
+  failure_.clear();
   timeline_.add(row, world_);
   const int frames = world_.frames();
   if (frames % frames_between_words == 0) {
@@ -347,7 +359,7 @@ void LiveSession::go(int frames) {
   std::erase_if(pins_, [this](const Pin& pin) { return pin.frames > world_.frames(); });
   for (const LiveGrab& grab : holding())
     if (!is_pinned(grab)) release(grab.body, grab.name);
-  tally_ = {};
+  if (world_.frames() < made) tally_ = {};
   ended_.clear();
   due_ = Clock::now();
   if (edits > timeline_.edits()) {
@@ -442,8 +454,12 @@ void LiveSession::tell_state() {
 }
 
 void LiveSession::tell_words() {
-  std::vector<std::string> words = tally_.warnings();
-  if (const std::string unsolved = tally_.unsolved_text(); !unsolved.empty()) words.push_back(unsolved);
+  std::vector<std::string> words = tally_.warnings(), meant;
+  for (const Body& body : world_.bodies())
+    if (supple::is_meant(body.def, WarningKind::unsolved)) meant.push_back(body.def.name);
+  if (const std::string unsolved = tally_.unsolved_text(meant); !unsolved.empty())
+    words.push_back(unsolved + "; more solver.iterations bring them nearer");
+  if (!failure_.empty()) words.insert(words.begin(), failure_);
   told_error_ = keeper_.error();
   if (!told_error_.empty()) words.push_back(told_error_);
   events_.tell_words(words);

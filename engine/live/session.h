@@ -32,6 +32,7 @@ namespace supple {
 struct LiveDesk {
   LiveDesk(GlChoice gl, std::filesystem::path shaders) : pictures(gl, std::move(shaders)) {}
   std::atomic<std::uint64_t> inputs = 0;  // number of the last command
+  std::atomic<bool> is_followed = false;  // whether a page has been opened; frames wait for the first one
   Mailbox mailbox;
   EventLog events;
   LivePictures pictures;
@@ -121,6 +122,7 @@ class LiveSession : public FrameGuide {
 
   std::shared_ptr<std::atomic<std::size_t>> saved_;  // number of edits in the last replay that was asked for
   bool controls_changed_ = false;
+  std::string failure_;     // of the step that failed last, until the next frame is made
   std::string told_error_;  // of the keeper
 };
 

@@ -101,7 +101,9 @@ ReplayFiles Script::replay_files(const std::filesystem::path& file, int frames, 
     named.make_files_absolute();
     const std::string text = named.as_toml() + "\n";
     try {
-      const Script read = load(SceneSource(file, text), assets, {});
+      // Changes were checked when they were made, take long to be checked, and are no part of the scene at the start.
+      for (const char* key : {"change", "session"}) named.remove(key);
+      const Script read = load(SceneSource(file, named.as_toml()), assets, {});
       if (comparable(read.parts_->scene_file) == comparable(parts.scene_file)) return {text, {}, {}};
     } catch (const InputError&) {  // as it does where a setting reaches a grab
     }
