@@ -8,10 +8,13 @@ namespace supple {
 std::optional<FilmEnd> FilmGuide::ends() {
   if (world_.frames() >= world_.scene().frames) return FilmEnd::done;
   if (interrupted()) return FilmEnd::interrupted;
-  if (!log_.keeps_checkpoints()) return std::nullopt;
+  return std::nullopt;
+}
+
+void FilmGuide::begin() {
+  if (!log_.keeps_checkpoints()) return;
   const Zone zone("checkpoint");
   checkpoint_before_ = world_.state();
-  return std::nullopt;
 }
 
 void FilmGuide::take(FrameRow row) {

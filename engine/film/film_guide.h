@@ -17,6 +17,7 @@ class FilmGuide : public FrameGuide {
       : world_(world), log_(log), pictures_(pictures), progress_(progress), first_(world.frames()) {}
 
   std::optional<FilmEnd> ends() override;
+  void begin() override;
   void take(FrameRow row) override;
 
   // Waits for the pictures and writes a checkpoint after the last frame. When pictures failed, the result says why.

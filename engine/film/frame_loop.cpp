@@ -15,6 +15,7 @@ FilmEnd FrameLoop::run(FrameGuide& guide, std::string& message) {
     if (const std::optional<FilmEnd> end = guide.ends()) return *end;
     const int frame = world_.frames();
     const Zone zone("frame", {}, frame);
+    guide.begin();
     FrameRow row;
     row.frame = frame;
     row.time_s = frame_time(frame, world_.scene().fps);

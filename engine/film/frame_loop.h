@@ -25,6 +25,8 @@ class FrameGuide {
   // Asked before each frame, between which the world may be changed, and go back (FrameLoop::go_to). Returns how the
   // loop ends; nothing where the world's next frame is wanted.
   virtual std::optional<FilmEnd> ends() = 0;
+  // Called where a frame begins. What it does counts as part of the frame.
+  virtual void begin() {}
   // Takes the row of a frame that was made, and whose draw list was put where it is drawn.
   virtual void take(FrameRow row) = 0;
 };
