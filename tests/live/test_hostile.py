@@ -167,5 +167,5 @@ def test_connections_that_ask_for_nothing_are_closed(session):
 
 def test_the_replay_can_be_asked_for_once_a_second(session):
     statuses = [session.page.ask("GET", "replay")[0] for _ in range(30)]
-    assert statuses.count(200) >= 5 and statuses.count(429) >= 20
+    assert statuses.count(200) >= 5 and statuses.count(429) >= 5 and set(statuses) == {200, 429}
     session.page.do(do="pause")  # commands have a limit of their own
