@@ -308,13 +308,8 @@ void add_options(Verb& verb, DrawCommand& command) {
                            .between(std::size_t(0), std::size_t(100000));
   what.flag("--merge", command.merge, "make the film of what has been drawn");
   verb.option("--of", command.of, "the number of parts").needs(index).between(1, 100000);
-  verb.option(
-          "--gl", [&plan](const std::string& word) { plan.gl = *value_named<GlChoice>(word); },
-          word_list(all_names<GlChoice>()))
-      .one_of(all_names<GlChoice>());
-  verb.flag(
-      "--no-cache", [&plan] { plan.cache = false; },
-      "make meshes and skins again; keep none in the user's cache folder");
+  add_gl_option(verb, plan.gl);
+  add_cache_option(verb, plan.cache);
   verb.flag("--quiet", command.quiet, "say nothing but errors");
 }
 

@@ -210,10 +210,7 @@ void add_film_options(Verb& verb, FilmCommand& command) {
   verb.flag(
       "--no-images", [&plan] { plan.pictures = FilmPictures::none; }, "simulate only");
   verb.flag("--trace", plan.trace, "where every thread's time went, for chrome://tracing or Perfetto: trace.json");
-  verb.option(
-          "--gl", [&plan](const std::string& word) { plan.gl = *value_named<GlChoice>(word); },
-          word_list(all_names<GlChoice>()))
-      .one_of(all_names<GlChoice>());
+  add_gl_option(verb, plan.gl);
   verb.option("--checkpoint-every", plan.checkpoint_every,
               "frames between checkpoints, from which a film can be resumed; 0 makes none")
       .between(0, 1000000)
@@ -226,11 +223,21 @@ void add_film_options(Verb& verb, FilmCommand& command) {
   verb.option("--repeat", plan.repeat,
               "folder of an earlier run of a scene with solver.budget_ms: end each step after as many iterations as "
               "there, for the same bits");
-  verb.flag(
-      "--no-cache", [&plan] { plan.cache = false; },
-      "make meshes and skins again; keep none in the user's cache folder");
+  add_cache_option(verb, plan.cache);
   verb.flag("--quiet", plan.quiet, "say nothing but errors, and warnings of what the film shows");
   verb.flag("--json", command.json, "the result as one line of JSON on standard output");
+}
+
+void add_gl_option(Verb& verb, GlChoice& gl) {
+  verb.option(
+          "--gl", [&gl](const std::string& word) { gl = *value_named<GlChoice>(word); },
+          word_list(all_names<GlChoice>()))
+      .one_of(all_names<GlChoice>());
+}
+
+void add_cache_option(Verb& verb, bool& cache) {
+  verb.flag(
+      "--no-cache", [&cache] { cache = false; }, "make meshes and skins again; keep none in the user's cache folder");
 }
 
 void add_coding_options(Verb& verb, FilmCoding& coding) {

@@ -22,6 +22,10 @@ struct FilmCommand {
 // Adds the options that every run of a scene has. --resume is not among them, because it is for single films only.
 void add_film_options(Verb& verb, FilmCommand& command);
 
+// Adds the option that chooses how pictures are drawn, and the one that keeps nothing in the user's cache.
+void add_gl_option(Verb& verb, GlChoice& gl);
+void add_cache_option(Verb& verb, bool& cache);
+
 // Adds the options of a film's file.
 void add_coding_options(Verb& verb, FilmCoding& coding);
 

@@ -132,13 +132,8 @@ void add_live(CommandLine& line) {
       .between(1, 256);
   verb.option("--set", plan.settings, "path=value over the scene's, such as solver.iterations=20; may be repeated")
       .repeatable();
-  verb.option(
-          "--gl", [&plan](const std::string& word) { plan.gl = *value_named<GlChoice>(word); },
-          word_list(all_names<GlChoice>()))
-      .one_of(all_names<GlChoice>());
-  verb.flag(
-      "--no-cache", [&plan] { plan.cache = false; },
-      "make meshes and skins again; keep none in the user's cache folder");
+  add_gl_option(verb, plan.gl);
+  add_cache_option(verb, plan.cache);
   verb.flag("--quiet", plan.quiet, "say the address, and nothing but errors and warnings of what was not saved");
   verb.runs([command, words] {
     take_standard_input(command->plan);

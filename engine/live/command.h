@@ -53,8 +53,9 @@ struct Command {
   double over = 0;          // of set: how long it takes [s]
   double factor = 1;        // of speed and zoom
   int frame = 0;            // of go: the number of frames that stay
-  // Of grab and drag: the place in the picture from its upper left corner, 0 to 1. Of orbit: azimuth and elevation
-  // [degrees]. Of pan: to the right and up, over the picture's height.
+  // For grab and drag, this is the place in the picture, counted from its upper left corner, 0 to 1. For orbit, it
+  // holds the change of azimuth and elevation [degrees]. For pan, it tells how far the scene moves to the right and up,
+  // over the picture's height.
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   std::string body, name;                // of release
   bool on = false;                       // of keep_rate; of drop: whether the handle goes on holding

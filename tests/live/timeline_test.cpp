@@ -10,27 +10,9 @@
 namespace supple {
 namespace timeline_test {
 
-const std::string scene = R"(fps = 30
-substeps = 2
-[[body]]
-name = "bar"
-box = { extent = [0.4, 0.1, 0.1], cells = [6, 2, 2] }
-position = [0, 0.3, 0]
-material = { model = "neo-hookean", mu = 10000, lambda = 20000 }
-[[body.handles]]
-name = "end"
-select = { box = [[0, 0, 0], [0.01, 1, 1]] }
-[[body]]
-name = "cube"
-box = { extent = [0.1, 0.1, 0.1], cells = [2, 2, 2] }
-position = [0.5, 0.3, 0]
-material = { model = "neo-hookean", mu = 10000, lambda = 20000 }
-)";
-
 class Session {
  public:
-  explicit Session(const std::string& text = scene)
-      : world(test::world_of(SceneSource("scene.toml", text))), timeline(world) {}
+  Session() : world(test::world_of(SceneSource("scene.toml", test::bar_and_cube))), timeline(world) {}
 
   void play(int frames) {
     for (int i = 0; i < frames; ++i) {

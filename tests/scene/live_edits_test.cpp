@@ -5,30 +5,15 @@
 #include <fstream>
 #include <sstream>
 
-#include "baselines/make_rule.h"
 #include "scene/replay/script_trial.h"
 #include "support/bodies.h"
+#include "support/played_world.h"
 #include "world/world.h"
 
 namespace supple {
 namespace live_edits_test {
 
-const std::string bar_and_ball = R"(fps = 20
-substeps = 2
-[[body]]
-name = "bar"
-box = { extent = [0.4, 0.1, 0.1], cells = [6, 2, 2] }
-position = [0, 0.3, 0]
-material = { model = "neo-hookean", mu = 10000, lambda = 20000 }
-[[body.handles]]
-name = "end"
-select = { box = [[0, 0, 0], [0.01, 1, 1]] }
-[[body]]
-name = "cube"
-box = { extent = [0.1, 0.1, 0.1], cells = [2, 2, 2] }
-position = [0.5, 0.3, 0]
-material = { model = "neo-hookean", mu = 10000, lambda = 20000 }
-[[collider]]
+const std::string bar_and_ball = "fps = 20\n" + test::bar_and_cube + R"([[collider]]
 name = "ball"
 shape = { sphere = { radius = 0.1 } }
 position = [0, -1, 0]
@@ -36,14 +21,7 @@ position = [0, -1, 0]
 
 struct Played {
   explicit Played(const SceneSource& source, const std::vector<std::string>& settings = {})
-      : world(load(source, settings)) {
-    world.start({make_rule, settings_of}, nullptr);
-  }
-  static World load(const SceneSource& source, const std::vector<std::string>& settings) {
-    Script script = Script::load(source, test::assets, settings);
-    std::vector<Body> bodies = assemble(script.scene());
-    return {std::move(script), std::move(bodies)};
-  }
+      : world(test::world_of(source, settings)) {}
   std::vector<std::uint64_t> play(int frames) {
     std::vector<std::uint64_t> hashes;
     for (int i = 0; i < frames; ++i) {
