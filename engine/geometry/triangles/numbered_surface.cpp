@@ -63,8 +63,6 @@ Numbered subset(const Numbered& surface, const std::vector<Eigen::Index>& kept) 
   return part;
 }
 
-namespace {
-
 void check_numbers(const TriMesh& raw, const std::string& name) {
   if (raw.triangles.rows() == 0) throw InputError(name, "has no triangles");
   for (Eigen::Index t = 0; t < raw.triangles.rows(); ++t) {
@@ -83,6 +81,8 @@ void check_numbers(const TriMesh& raw, const std::string& name) {
     }
   }
 }
+
+namespace {
 
 Numbered without_flat_triangles(const Numbered& surface, std::vector<std::string>* notes) {
   const TriMesh& mesh = surface.mesh;

@@ -31,6 +31,10 @@ TriMesh merged(const TriMesh& raw);
 // Returns the flagged triangles alone, with all vertices.
 Numbered subset(const Numbered& surface, const std::vector<Eigen::Index>& kept);
 
+// Throws InputError where the surface has no triangles, where a triangle names a vertex that is not there, and where a
+// triangle's corner is not finite or beyond 1e50.
+void check_numbers(const TriMesh& raw, const std::string& name);
+
 // Merges equal positions, and leaves out triangles without area and those that repeat others, of which the notes tell.
 // Throws InputError where indices or numbers are no good, or where no triangle is left.
 Numbered cleaned(const TriMesh& raw, const std::string& name, std::vector<std::string>* notes);

@@ -1,0 +1,16 @@
+// Tells of a mesh that was edited where its vertices lie on the surface from which it came.
+#pragma once
+
+#include "geometry/triangles/editable_surface.h"
+#include "geometry/triangles/patch_projection.h"
+#include "geometry/triangles/remesh.h"
+#include "geometry/triangles/welded_surface.h"
+
+namespace supple {
+
+// Takes the triangles that are left of an edited surface. joined: what was edited, perhaps with triangles turned over;
+// surface: what was welded to that.
+RemeshedSurface with_places(const EditableSurface& edited, const PatchProjection& projection,
+                            const SurfaceFeatures& features, const WeldedSurface& joined, const TriMesh& surface);
+
+}  // namespace supple
