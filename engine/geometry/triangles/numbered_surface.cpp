@@ -16,6 +16,13 @@ Vec3 area_vector(const TriMesh& mesh, Eigen::Index t) {
   return 0.5 * (corner(mesh, t, 1) - corner(mesh, t, 0)).cross(corner(mesh, t, 2) - corner(mesh, t, 0));
 }
 
+bool is_flat(const TriMesh& mesh, Eigen::Index t) {
+  double longest = 0;
+  for (int k = 0; k < 3; ++k)
+    longest = std::max(longest, (corner(mesh, t, k) - corner(mesh, t, (k + 1) % 3)).squaredNorm());
+  return !(area_vector(mesh, t).norm() > 1e-15 * longest);
+}
+
 std::string place_text(const Vec3& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z()); }
 
 void turn_over(Triangles& triangles, Eigen::Index t) { std::swap(triangles(t, 1), triangles(t, 2)); }
@@ -88,10 +95,7 @@ Numbered without_flat_triangles(const Numbered& surface, std::vector<std::string
   const TriMesh& mesh = surface.mesh;
   std::vector<Eigen::Index> kept;
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
-    double longest = 0;
-    for (int k = 0; k < 3; ++k)
-      longest = std::max(longest, (corner(mesh, t, k) - corner(mesh, t, (k + 1) % 3)).squaredNorm());
-    if (area_vector(mesh, t).norm() > 1e-15 * longest) kept.push_back(t);  // a smaller area is round-off
+    if (!is_flat(mesh, t)) kept.push_back(t);
   }
   const Eigen::Index dropped = mesh.triangles.rows() - std::ssize(kept);
   if (dropped > 0) notes->push_back(fmt::format("{} triangles without area were left out", dropped));

@@ -18,6 +18,8 @@ struct Numbered {
 inline std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 inline Vec3 corner(const TriMesh& mesh, Eigen::Index t, int k) { return mesh.points.row(mesh.triangles(t, k)); }
 Vec3 area_vector(const TriMesh& mesh, Eigen::Index t);
+// Tells whether the area of a triangle is only round-off.
+bool is_flat(const TriMesh& mesh, Eigen::Index t);
 void turn_over(Triangles& triangles, Eigen::Index t);
 
 std::string place_text(const Vec3& p);

@@ -28,7 +28,7 @@ struct RemeshOptions {
   double corner_angle = std::numbers::pi / 4;
   // Further edges that stay as lines, two vertices of the surface each; former_seams (welded_surface.h) names those of
   // a texture.
-  std::vector<std::array<std::int32_t, 2>> lines;
+  std::vector<std::array<std::int32_t, 2>> lines = {};
   int rounds = 8;  // of splits, collapses, flips and relaxation
 };
 

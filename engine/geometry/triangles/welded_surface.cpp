@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <unordered_map>
 
 #include "base/error.h"
+#include "geometry/triangles/flat_triangles.h"
 #include "geometry/triangles/numbered_surface.h"
 #include "geometry/triangles/triangle_edges.h"
 
@@ -84,35 +86,47 @@ WeldedSurface welded(const TriMesh& surface, double tolerance, const std::string
   if (!(tolerance >= 0 && tolerance < infinity))
     throw InputError(name, fmt::format("cannot be welded within {} m; 0 or more is allowed", tolerance));
   check_numbers(surface, name);
+  const TriMesh raw = merged(snapped(surface, tolerance));  // with all triangles
+  std::vector<Eigen::Index> numbers(at(raw.triangles.rows()));
+  std::iota(numbers.begin(), numbers.end(), 0);
+  const Numbered mended = with_flat_triangles_mended({raw, numbers});
   std::vector<std::string> unwanted_notes;
-  const Numbered clean = cleaned(snapped(surface, tolerance), name, &unwanted_notes);
+  const Numbered clean = cleaned(mended.mesh, name, &unwanted_notes);
   WeldedSurface result;
   result.mesh = merged(clean.mesh);  // drops the vertices of triangles that were left out
+  std::vector<std::int32_t> target(at(raw.points.rows()), -1);
+  for (Eigen::Index t = 0; t < result.mesh.triangles.rows(); ++t) {
+    const Eigen::Index part = clean.number[at(t)] - 1, source = mended.number[at(part)];
+    result.triangle_source.push_back(std::int32_t(source));
+    std::array<std::int32_t, 3>& corners = result.corner_source.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t before = mended.mesh.triangles(part, k);
+      target[at(before)] = result.mesh.triangles(t, k);
+      corners[at(k)] = before == raw.triangles(source, k) ? surface.triangles(source, k) : -1;
+    }
+  }
   result.vertex_source.assign(at(result.mesh.points.rows()), -1);
   result.vertex_target.assign(at(surface.points.rows()), -1);
-  for (Eigen::Index t = 0; t < result.mesh.triangles.rows(); ++t) {
-    const Eigen::Index source = clean.number[at(t)] - 1;
-    result.triangle_source.push_back(std::int32_t(source));
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t now = result.mesh.triangles(t, k), before = surface.triangles(source, k);
-      if (result.vertex_source[at(now)] < 0) result.vertex_source[at(now)] = before;
-      result.vertex_target[at(before)] = now;
-    }
+  for (Eigen::Index i = 0; i < raw.triangles.size(); ++i) {
+    const std::int32_t before = surface.triangles.data()[i], now = target[at(raw.triangles.data()[i])];
+    result.vertex_target[at(before)] = now;
+    if (now >= 0 && result.vertex_source[at(now)] < 0) result.vertex_source[at(now)] = before;
   }
   return result;
 }
 
-std::vector<std::array<std::int32_t, 2>> former_seams(const TriMesh& surface, const WeldedSurface& joined) {
+std::vector<std::array<std::int32_t, 2>> former_seams(const WeldedSurface& joined) {
   const std::vector<TriangleEdge> sides = sorted_edges(joined.mesh.triangles);
-  const auto ends_before = [&](const TriangleEdge& side) {
-    const std::int32_t source = joined.triangle_source[at(side.triangle)];
-    const std::int32_t from = surface.triangles(source, side.side), to = surface.triangles(source, (side.side + 1) % 3);
-    return side.upward ? std::array{from, to} : std::array{to, from};
+  const auto differ = [&](const TriangleEdge& a, const TriangleEdge& b, bool upper) {
+    const auto before = [&](const TriangleEdge& side) {
+      return joined.corner_source[at(side.triangle)][at(side.upward == upper ? (side.side + 1) % 3 : side.side)];
+    };
+    return before(a) >= 0 && before(b) >= 0 && before(a) != before(b);
   };
   std::vector<std::array<std::int32_t, 2>> seams;
   for (std::size_t i = 1; i < sides.size(); ++i) {
     const TriangleEdge &a = sides[i - 1], &b = sides[i];
-    if (a.low != b.low || a.high != b.high || ends_before(a) == ends_before(b)) continue;
+    if (a.low != b.low || a.high != b.high || !(differ(a, b, false) || differ(a, b, true))) continue;
     if (seams.empty() || seams.back() != std::array{a.low, a.high}) seams.push_back({a.low, a.high});
   }
   return seams;
