@@ -1,6 +1,6 @@
 // Holds a triangle mesh that changes: edges are split, collapsed and flipped, and vertices move. Edges may have any
 // number of triangles; lines that must stay, and the patches between them, are those of feature_lines.h. Which edge is
-// changed, and where vertices go, is decided in remesh.cpp and relaxation.cpp. Each change is refused that would turn a
+// changed, and where vertices go, is decided in remesh_rounds.cpp. Each change is refused that would turn a
 // triangle over, make one much worse than those around it, or change how the surface hangs together.
 #pragma once
 
@@ -28,7 +28,7 @@ class EditableSurface {
     std::int32_t patch;
     bool is_gone() const { return corners[0] < 0; }
     int place_of(std::int32_t vertex) const { return corners[0] == vertex ? 0 : (corners[1] == vertex ? 1 : 2); }
-    // Returns the side between two of its vertices: the corner after them precedes it.
+    // Returns the side that joins two of its vertices.
     int side_of(std::int32_t a, std::int32_t b) const {
       return corners[1] != a && corners[1] != b ? 2 : (corners[2] != a && corners[2] != b ? 0 : 1);
     }

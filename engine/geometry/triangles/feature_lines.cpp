@@ -96,17 +96,20 @@ class FeatureSearch {
     return 3 * at(side.triangle) + std::size_t(k);
   }
 
-  // The normals of triangles that are nearly flat are noise: coordinates in a file often have seven digits.
   bool is_crease(const TriangleEdge& a, const TriangleEdge& b) const {
     const Vec3 m = area_vector(mesh_, a.triangle), n = area_vector(mesh_, b.triangle);
-    for (const auto& [side, area] : {std::pair(a, m), std::pair(b, n)}) {
-      double longest = 0;
-      for (int k = 0; k < 3; ++k)
-        longest =
-            std::max(longest, (corner(mesh_, side.triangle, k) - corner(mesh_, side.triangle, (k + 1) % 3)).norm());
-      if (area.norm() < 1e-5 * longest * longest) return false;
-    }
+    if (is_thin(a.triangle, m) || is_thin(b.triangle, n)) return false;
     return std::atan2(m.cross(n).norm(), m.dot(n)) > limits_.crease;
+  }
+
+  // The normals of triangles that are nearly flat are noise: coordinates in a file often have seven digits. Those of
+  // longish ones that are far thinner than the shortest crease show nothing that matters at that scale.
+  bool is_thin(std::int32_t t, const Vec3& area) const {
+    double longest = 0;
+    for (int k = 0; k < 3; ++k)
+      longest = std::max(longest, (corner(mesh_, t, k) - corner(mesh_, t, (k + 1) % 3)).norm());
+    const double height = 2 * area.norm() / longest;
+    return height < 1e-5 * longest || (height < 1e-2 * longest && height < 1e-2 * limits_.shortest);
   }
 
   // A vertex is a corner unless its triangles hang together through edges at it, and no line or one line of one kind

@@ -40,7 +40,9 @@ struct SurfacePlace {
 
 struct RemeshedSurface {
   TriMesh mesh;
-  std::vector<SurfacePlace> places;  // by vertex: where it lies on the input
+  // By vertex: where it lies on the input. At a fold that is too sharp for the new edges and no crease, a vertex that
+  // would turn triangles over stays off the input, and this is the nearest place.
+  std::vector<SurfacePlace> places;
   // By triangle and corner: the same, but in a triangle of the input on this triangle's side of each line. What jumps
   // at a line, such as the coordinates of a texture at its seams, is interpolated at these.
   std::vector<std::array<SurfacePlace, 3>> corners;
