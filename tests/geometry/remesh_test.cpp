@@ -83,20 +83,27 @@ Vec3 point_at(const TriMesh& mesh, const SurfacePlace& place) {
   return p;
 }
 
-// Checks what holds for every result: all vertices are used, no triangle is flat, and all places are right.
-void expect_sound(const TriMesh& input, const RemeshedSurface& result) {
+// Checks that all vertices are used, and that no triangle is flat or there twice.
+void expect_clean(const TriMesh& mesh, double size) {
   std::set<int> used;
-  for (const std::int32_t v : result.mesh.triangles.reshaped()) used.insert(v);
-  EXPECT_EQ(std::ssize(used), result.mesh.points.rows());
-  EXPECT_EQ(std::ssize(result.places), result.mesh.points.rows());
-  EXPECT_EQ(std::ssize(result.corners), result.mesh.triangles.rows());
+  for (const std::int32_t v : mesh.triangles.reshaped()) used.insert(v);
+  EXPECT_EQ(std::ssize(used), mesh.points.rows());
   std::set<std::array<int, 3>> triangles;
-  const double size = bounds_of(input.points).diagonal();
-  for (Eigen::Index t = 0; t < result.mesh.triangles.rows(); ++t) {
-    std::array<int, 3> corners{result.mesh.triangles(t, 0), result.mesh.triangles(t, 1), result.mesh.triangles(t, 2)};
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    std::array<int, 3> corners{mesh.triangles(t, 0), mesh.triangles(t, 1), mesh.triangles(t, 2)};
     std::ranges::sort(corners);
     EXPECT_TRUE(triangles.insert(corners).second) << "triangle " << t << " is there twice";
-    EXPECT_GT(area_of(result.mesh, t).norm(), 1e-9 * size * size);
+    EXPECT_GT(area_of(mesh, t).norm(), 1e-9 * size * size);
+  }
+}
+
+// Checks what holds for every result on a surface that its edges can follow: it is clean, and all places are right.
+void expect_sound(const TriMesh& input, const RemeshedSurface& result) {
+  const double size = bounds_of(input.points).diagonal();
+  expect_clean(result.mesh, size);
+  EXPECT_EQ(std::ssize(result.places), result.mesh.points.rows());
+  EXPECT_EQ(std::ssize(result.corners), result.mesh.triangles.rows());
+  for (Eigen::Index t = 0; t < result.mesh.triangles.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const SurfacePlace& place = result.corners[std::size_t(t)][std::size_t(k)];
       EXPECT_GE(place.weights.minCoeff(), 0);
@@ -398,6 +405,119 @@ TEST(Remeshed, TornSurfacesKeepTheirPiecesAndHoles) {
       for (const SurfacePlace& place : result.places) EXPECT_LT(place.triangle, torn.triangles.rows());
     }
   }
+}
+
+TEST(Remeshed, SmallSurfacesSurviveLargeEdges) {
+  TriMesh tetrahedron{Positions(4, 3), Triangles(4, 3)}, triangle{Positions(3, 3), Triangles(1, 3)};
+  tetrahedron.points << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
+  tetrahedron.triangles << 0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3;
+  triangle.points << 0, 0, 0, 1, 0, 0, 0, 1, 0;
+  triangle.triangles << 0, 1, 2;
+  const TriMesh ball = test::sphere_surface(1, 8, 6), strip = flat_grid(12, 1), fine = test::sphere_surface(1, 30, 20);
+  for (const TriMesh& mesh : {tetrahedron, triangle, ball, strip, fine, cut_cylinder(9, 2)}) {
+    for (const double crease : {0.3, 1.0, 4.0}) {
+      const RemeshedSurface result = remeshed(mesh, {.edge_length = 5, .crease_angle = crease}, "surface");
+      expect_clean(result.mesh, bounds_of(mesh.points).diagonal());
+      EXPECT_EQ(euler_characteristic(result.mesh), euler_characteristic(welded(mesh, 0, "surface").mesh));
+      for (const auto& [edge, count] : edges_of(result.mesh)) EXPECT_LE(count, 2);
+    }
+  }
+}
+
+TEST(Remeshed, ConcaveBordersFoldNothing) {
+  // A star with eight points: its border is concave at every second vertex.
+  const TriMesh star = welded(grid(64, 5,
+                                   [](double s, double t) {
+                                     const double angle = 2 * std::numbers::pi * std::fmod(s, 1.0);
+                                     const double reach = 0.25 + 1.5 * std::abs(std::fmod(8 * s, 1.0) - 0.5);
+                                     return Vec3((1 - t) * reach * Vec3(std::cos(angle), std::sin(angle), 0));
+                                   }),
+                              0, "star")
+                           .mesh;
+  for (const double length : {0.3, 0.1, 0.03}) {
+    const RemeshedSurface result = remeshed_to(star, length);
+    expect_sound(star, result);
+    EXPECT_NEAR(total_area(result.mesh), total_area(star), 0.3 * length * total_area(star));
+    for (Eigen::Index t = 0; t < result.mesh.triangles.rows(); ++t) EXPECT_GT(area_of(result.mesh, t).z(), 0);
+  }
+}
+
+TEST(Remeshed, BorderOfACoarseHoleIsSplitEvenly) {
+  // Neither border turns by more than 45 degrees, so that none has corners.
+  const TriMesh ring = welded(grid(10, 1,
+                                   [](double s, double t) {
+                                     const double angle = 2 * std::numbers::pi * std::fmod(s, 1.0);
+                                     return Vec3((1 + t) * Vec3(std::cos(angle), std::sin(angle), 0));
+                                   }),
+                              0, "ring")
+                           .mesh;
+  const RemeshedSurface result = remeshed_to(ring, 0.15);
+  expect_sound(ring, result);
+  expect_even(result.mesh, 0.15);
+  EXPECT_NEAR(total_area(result.mesh), total_area(ring), 0.01 * total_area(ring));
+  for (const auto& [edge, count] : edges_of(result.mesh)) {
+    if (count != 1) continue;
+    EXPECT_NEAR(length_of(result.mesh, edge), 0.15, 0.06);
+  }
+}
+
+TEST(Remeshed, ConesThatTouchStayTogether) {
+  TriMesh cones = grid(16, 8, [](double s, double t) {
+    const double angle = 2 * std::numbers::pi * std::fmod(s, 1.0), radius = 2 * t - 1;
+    return Vec3(radius * std::cos(angle), 2 * radius, std::abs(radius) * std::sin(angle));
+  });
+  cones = welded(cones, 1e-9, "cones").mesh;
+  const RemeshedSurface result = remeshed(cones, {.edge_length = 0.3, .crease_angle = 4}, "cones");
+  expect_sound(cones, result);
+  EXPECT_EQ(euler_characteristic(result.mesh), euler_characteristic(cones));
+  EXPECT_LT(result.mesh.points.rowwise().norm().minCoeff(), 1e-12);  // the common tip
+  EXPECT_NEAR(bounds_of(result.mesh.points).extent().y(), 4, 1e-12);
+}
+
+TEST(Remeshed, CoarseFoldsKeepTheirArea) {
+  // Sheets fold by 50 degrees, to either side in turn, which is less than a crease.
+  const double half = 25 * std::numbers::pi / 180;
+  const TriMesh folded = grid(8, 4, [&](double s, double t) {
+    const int fold = int(std::lround(8 * s));
+    return Vec3(s * std::cos(half), fold % 2 * std::sin(half) / 8, t);
+  });
+  const RemeshedSurface result = remeshed_to(folded, 0.03);
+  expect_sound(folded, result);
+  EXPECT_LT(share_of_angles_below(result.mesh, 25), 0.05);
+  EXPECT_NEAR(total_area(result.mesh), total_area(folded), 0.03 * total_area(folded));
+}
+
+TEST(Remeshed, NoiseAndThinTrianglesMakeNoCreases) {
+  // A quarter of the triangles have a vertex in the middle of a side, a hair beside it, and one a small pyramid.
+  const TriMesh ball = test::sphere_surface(1, 24, 16);
+  std::mt19937 random(3);
+  std::vector<Vec3> points;
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  for (Eigen::Index v = 0; v < ball.points.rows(); ++v) points.emplace_back(ball.points.row(v));
+  for (Eigen::Index t = 0; t < ball.triangles.rows(); ++t) {
+    const std::int32_t a = ball.triangles(t, 0), b = ball.triangles(t, 1), c = ball.triangles(t, 2);
+    const auto added = std::int32_t(points.size());
+    const Vec3 &xa = points[std::size_t(a)], &xb = points[std::size_t(b)], &xc = points[std::size_t(c)];
+    if (t == 300) {
+      triangles.insert(triangles.end(), {{a, b, added}, {b, c, added}, {c, a, added}});
+      points.push_back(1.2 * (xa + xb + xc) / 3);
+    } else if (random() % 4 == 0) {
+      triangles.insert(triangles.end(), {{a, added, c}, {added, b, c}, {a, b, added}});
+      const auto noise = [&] { return 1e-7 * (double(random()) / double(std::mt19937::max()) - 0.5); };
+      points.push_back(0.5 * (xa + xb) + Vec3(noise(), noise(), noise()));
+    } else {
+      triangles.push_back({a, b, c});
+    }
+  }
+  TriMesh noisy{Positions(std::ssize(points), 3), Triangles(std::ssize(triangles), 3)};
+  for (std::size_t v = 0; v < points.size(); ++v) noisy.points.row(Eigen::Index(v)) = points[v].transpose();
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    noisy.triangles.row(Eigen::Index(t)) << triangles[t][0], triangles[t][1], triangles[t][2];
+  const RemeshedSurface result = remeshed(noisy, {.edge_length = 0.3, .crease_angle = 0.7}, "ball");
+  expect_sound(noisy, result);
+  expect_even(result.mesh, 0.3);
+  EXPECT_EQ(share_of_angles_below(result.mesh, 25), 0);
+  EXPECT_EQ(euler_characteristic(result.mesh), 2);
 }
 
 TEST(Remeshed, RefusesNonsense) {

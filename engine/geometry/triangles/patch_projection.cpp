@@ -30,7 +30,8 @@ PatchProjection::Place PatchProjection::closest(const Vec3& p, std::int32_t patc
                                                 std::int32_t near) const {
   Place guess{-1, p};
   double within = infinity;
-  if (near >= 0 && features_.patch[at(near)] == patch && area_vector(mesh_, near).dot(facing) > 0) {
+  const bool any = facing.isZero();
+  if (near >= 0 && features_.patch[at(near)] == patch && (any || area_vector(mesh_, near).dot(facing) > 0)) {
     guess = {near, closest_in_triangle(p, corner(mesh_, near, 0), corner(mesh_, near, 1), corner(mesh_, near, 2))};
     within = (guess.point - p).norm();
   }

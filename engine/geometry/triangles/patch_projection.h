@@ -18,7 +18,8 @@ class PatchProjection {
     std::int32_t triangle;  // of the surface
     Vec3 point;
   };
-  // Returns the closest point of a patch, among its triangles that face a direction where there are some. near: a
+  // Returns the closest point of a patch, among its triangles that face a direction where there are some, or among all
+  // where the direction is zero. near: a
   // triangle that is perhaps close, which makes the search quick; -1: none.
   Place closest(const Vec3& p, std::int32_t patch, const Vec3& facing, std::int32_t near) const;
 

@@ -48,8 +48,7 @@ class PlaceSearch {
   }
 
   std::int32_t nearest(const Vec3& p, const EditableSurface::Triangle& triangle, std::int32_t near) const {
-    const auto x = [&](std::size_t k) -> const Vec3& { return edited_.vertex(triangle.corners[k]).x; };
-    return projection_.closest(p, triangle.patch, (x(1) - x(0)).cross(x(2) - x(0)), near).triangle;
+    return projection_.closest(p, triangle.patch, Vec3::Zero(), near).triangle;
   }
 
   // Lists the input's triangles at the corner, or at the part of the line, where a vertex is.
