@@ -1,11 +1,12 @@
-// Computes what moving one corner of a tetrahedron or spring changes: the force there, and the 3 x 3 block of second
-// derivatives. In the basis of the singular vectors of F = U S V^T (elements/tetrahedron_stiffness.h) with w = V^T grad
-// N of the corner, the force is U (slope o w), and the block is U K U^T with K_pp = h_pp w_p^2 + sum_q (flip + twist)/2
-// w_q^2 and K_pq = (h_pq + (flip - twist)/2) w_p w_q.
+// Computes what moving one corner of a tetrahedron, spring or triangle changes: the force there, and the 3 x 3 block of
+// second derivatives. In the basis of the singular vectors of F = U S V^T (elements/tetrahedron_stiffness.h) with w =
+// V^T grad N of the corner, the force is U (slope o w), and the block is U K U^T with K_pp = h_pp w_p^2 + sum_q (flip +
+// twist)/2 w_q^2 and K_pq = (h_pq + (flip - twist)/2) w_p w_q.
 #pragma once
 
 #include "sim/elements/spring.h"
 #include "sim/elements/tetrahedron_scalar_stiffness.h"
+#include "sim/elements/triangle_stiffness.h"
 
 namespace supple {
 
@@ -136,6 +137,19 @@ CornerDerivatives<V> spring_corner(const V (&x)[2][3], const V (&field)[SpringEl
   spring.energy(x, field, force);
   for (int c = 0; c < 3; ++c) result.force[c] = force[0][c];
   spring.stiffness(x, field, true, result.block);
+  return result;
+}
+
+// Finds the derivatives at corner 1 of a triangle of cloth. The block is that of its projected Hessian.
+template <class M, class V>
+CornerDerivatives<V> triangle_corner(const M& sheet, const V (&x)[3][3], const V (&field)[Triangle::fields]) {
+  const TriangleFormula<M> triangle(sheet);
+  V force[2][3], packed[packed_size(6)];
+  CornerDerivatives<V> result;
+  triangle.energy(x, field, force);
+  triangle.stiffness(x, field, true, packed);
+  for (int c = 0; c < 3; ++c) result.force[c] = force[0][c];
+  for (int n = 0; n < 6; ++n) result.block[n] = packed[n];
   return result;
 }
 

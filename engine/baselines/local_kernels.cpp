@@ -25,6 +25,16 @@ void corners(const ElementChunk& chunk, const double* x, double* out) {
     });
     return;
   }
+  if (chunk.kind == ElementKind::triangle) {
+    std::visit(
+        [&](const auto& sheet) {
+          for_each_register<Triangle>(chunk, x, [&](const auto& place, const auto& field, std::size_t first) {
+            store_corner(triangle_corner(sheet, place, field), out + first * corner_numbers);
+          });
+        },
+        *chunk.membrane);
+    return;
+  }
   std::visit(
       [&](const auto& material) {
         for_each_register<Tetrahedron>(chunk, x, [&](const auto& place, const auto& field, std::size_t first) {

@@ -98,6 +98,9 @@ std::unique_ptr<SearchRule> newton_rule(const Method& method, const Model& model
 
 std::unique_ptr<SearchRule> make_rule(const Method& method, const Model& model) {
   if (const auto problem = problem_of(method)) throw InputError("method", problem->message);
+  if (method.acceleration == Acceleration::admm && !model.fabrics.empty())
+    throw InputError("method",
+                     "admm: has no local step for the triangles of cloth, which body '" + model.name + "' has");
   const bool chebyshev = method.acceleration == Acceleration::chebyshev;
   if (method.matrix == StartMatrix::vertex_blocks) return std::make_unique<VertexBlockRule>(model, chebyshev);
   if (method.acceleration == Acceleration::admm) return std::make_unique<SplittingRule>();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sim/model/bending.h"
 #include "sim/model/element_view.h"
 
 namespace supple {
@@ -12,28 +13,31 @@ SparseMatrix system_matrix_of(const Model& model) {
   for (int v = 0; v < model.free; ++v) {
     double own = model.scheme.inertia * model.mass[v] / (model.time_step * model.time_step);
     if (!model.handle_stiffness.empty()) own += scale * model.handle_stiffness[v];
+    if (!model.bending.begin.empty()) own += scale * bending_diagonal(model.bending, v);
     entries.emplace_back(v, v, own);
-    if (model.damping.begin.empty()) continue;
-    for (std::int32_t k = model.damping.begin[v]; k < model.damping.begin[v + 1]; ++k) {
-      if (model.damping.column[k] < model.free)
-        entries.emplace_back(v, model.damping.column[k], model.damping.value[k]);
-    }
+    const auto add_row = [&](const Model::SparseRows& rows, double factor) {
+      for (std::int32_t k = rows.begin.empty() ? 0 : rows.begin[v]; !rows.begin.empty() && k < rows.begin[v + 1]; ++k) {
+        if (rows.column[k] < model.free) entries.emplace_back(v, rows.column[k], factor * rows.value[k]);
+      }
+    };
+    add_row(model.damping, 1);
+    add_row(model.bending, scale);
   }
   for_each_element(model, [&](const ElementView& element) {
     const bool solid = element.kind == ElementKind::tetrahedron;
-    const auto add = [&](const SystemTerm& term, double k) {
+    const auto add = [&](const SystemTerm& term) {
       for (int a = 0; a < corners_of(element.kind); ++a) {
         for (int b = 0; b < corners_of(element.kind); ++b) {
           if (std::max(element.corner[a], element.corner[b]) >= model.free) continue;
           double product = 0;
           for (int i = 0; i < 3; ++i) product += term.row[a][i] * term.row[b][i];
-          entries.emplace_back(element.corner[a], element.corner[b], scale * k * term.weight * product);
+          entries.emplace_back(element.corner[a], element.corner[b], scale * term.weight * product);
         }
       }
     };
-    add(unit_term(element), solid ? model.stiffness[element.region].k : element.field[1]);
+    add(model.system_term(element));
     if (solid && !model.fibres.empty() && model.fibres[element.region].kappa > 0)
-      add(fibre_term(element, model.fibres[element.region]), 1);
+      add(fibre_term(element, model.fibres[element.region]));
   });
   SparseMatrix matrix(model.free, model.free);
   matrix.setFromTriplets(entries.begin(), entries.end());

@@ -28,7 +28,8 @@ CornersByVertex corners_of_vertices(const Model& model, const std::vector<Elemen
 }
 
 // Gives each free vertex the lowest number that no neighbour with a lower index has.
-std::vector<int> greedy_colors(const std::vector<ElementView>& elements, const CornersByVertex& corners) {
+std::vector<int> greedy_colors(const Model& model, const std::vector<ElementView>& elements,
+                               const CornersByVertex& corners) {
   std::vector<int> color(corners.size(), -1);
   std::vector<std::size_t> seen;  // by colour: the last vertex with a neighbour that has it
   for (std::size_t v = 0; v < corners.size(); ++v) {
@@ -38,6 +39,11 @@ std::vector<int> greedy_colors(const std::vector<ElementView>& elements, const C
         const auto other = static_cast<std::size_t>(element.corner[k]);
         if (other < v) seen[color[other]] = v;
       }
+    }
+    for (std::int32_t k = model.bending.begin.empty() ? 0 : model.bending.begin[v];
+         !model.bending.begin.empty() && k < model.bending.begin[v + 1]; ++k) {
+      const auto other = static_cast<std::size_t>(model.bending.column[k]);
+      if (other < v) seen[color[other]] = v;
     }
     const auto unseen = std::find_if(seen.begin(), seen.end(), [&](std::size_t last) { return last != v; });
     color[v] = static_cast<int>(unseen - seen.begin());
@@ -49,12 +55,17 @@ std::vector<int> greedy_colors(const std::vector<ElementView>& elements, const C
 // Renumbers the corners of an element so that `corner` becomes its corner 1.
 ElementView turned(ElementView element, int corner) {
   auto& field = element.field;
-  const bool solid = element.kind == ElementKind::tetrahedron;
-  if (solid && corner == 0) {
-    // The gradients of the four corners add up to zero.
-    for (int c = 0; c < 3; ++c) field[c] = -(field[c] + field[3 + c] + field[6 + c]);
-  } else if (solid) {
-    for (int c = 0; c < 3; ++c) std::swap(field[c], field[3 * (corner - 1) + c]);
+  if (element.kind != ElementKind::spring) {
+    const int inner = corners_of(element.kind) - 1;  // gradients of corners 1 and on, with as many numbers each
+    for (int c = 0; c < inner; ++c) {
+      if (corner > 0) {
+        std::swap(field[c], field[inner * (corner - 1) + c]);
+        continue;
+      }
+      double sum = 0;  // the gradients of all corners add up to zero
+      for (int k = 0; k < inner; ++k) sum += field[inner * k + c];
+      field[c] = -sum;
+    }
   }
   std::swap(element.corner[1], element.corner[corner]);
   return element;
@@ -124,6 +135,7 @@ ElementChunk CornerChunk::view(const Model& model) const {
   return {kind,
           solid ? &model.materials[region] : nullptr,
           fibred ? &model.fibres[region] : nullptr,
+          kind == ElementKind::triangle ? &model.fabrics[region].membrane : nullptr,
           blocks,
           static_cast<int>(vertex.size()),
           vertex.data(),
@@ -136,7 +148,7 @@ std::vector<VertexColor> vertex_colors(const Model& model) {
   std::vector<ElementView> elements;
   for_each_element(model, [&](const ElementView& element) { elements.push_back(element); });
   const CornersByVertex corners = corners_of_vertices(model, elements);
-  const std::vector<int> color_of = greedy_colors(elements, corners);
+  const std::vector<int> color_of = greedy_colors(model, elements, corners);
   std::vector<VertexColor> colors;
   for (int v = 0; v < model.free; ++v) {
     if (color_of[v] >= static_cast<int>(colors.size())) colors.resize(color_of[v] + 1);

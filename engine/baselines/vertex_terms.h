@@ -2,6 +2,7 @@
 // that treat elements one by one add the elements' forces themselves. The whole of g is in sim/solver/objective.h.
 #pragma once
 
+#include "sim/model/bending.h"
 #include "sim/solver/open_workspace.h"
 
 namespace supple {
@@ -21,6 +22,16 @@ inline VertexTerms vertex_terms(const Model& model, const OpenWorkspace& w, cons
     // e theta = 1 for both integrators.
     terms.slope += model.handle_stiffness[v] * (place - w.target.row(v).transpose());
     terms.stiffness += theta * model.handle_stiffness[v];
+  }
+  if (!model.bending.begin.empty()) {
+    // Both integrators evaluate forces at theta x + (1 - theta) q.
+    const Model::SparseRows& rows = model.bending;
+    for (std::int32_t k = rows.begin[v]; k < rows.begin[v + 1]; ++k) {
+      Vec3 apart = theta * (x.row(rows.column[k]) - x.row(v)).transpose();
+      if (theta < 1) apart += (1 - theta) * (w.start_copy.row(rows.column[k]) - w.start_copy.row(v)).transpose();
+      terms.slope += rows.value[k] * apart;
+    }
+    terms.stiffness += theta * bending_diagonal(rows, v);
   }
   if (!model.damping.begin.empty()) {
     for (std::int32_t k = model.damping.begin[v]; k < model.damping.begin[v + 1]; ++k) {

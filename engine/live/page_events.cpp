@@ -57,9 +57,8 @@ void PageEvents::tell_scene(const std::string& record) {
   Json bodies = Json::array(), fields = Json::array();
   for (const Body& body : world_.bodies()) {
     const TetMesh& mesh = body.description.mesh;
-    bodies.push_back({{"name", body.def.name},
-                      {"vertices", mesh.rest.rows()},
-                      {"elements", mesh.tets.rows() + std::ssize(body.description.springs)}});
+    bodies.push_back(
+        {{"name", body.def.name}, {"vertices", mesh.rest.rows()}, {"elements", elements_of(body.description)}});
   }
   for (const std::string& name : all_names<FieldQuantity>())
     if (name != name_of(FieldQuantity::distance)) fields.push_back(name);  // it needs another run

@@ -85,6 +85,21 @@ Subject spring() {
   return {"spring", "cloth", rest, energy, 1e4};
 }
 
+Subject triangle(const Membrane& membrane) {
+  Corners rest(3, 3);
+  rest << 0, 0, 0, 0.9, 0.1, 0, 0.2, 1.1, 0;
+  std::array<double, Triangle::fields> field;
+  double filled[Triangle::fields];
+  Triangle::fill({0.9, 0.2, 0.1, 1.1}, filled);
+  std::copy(filled, filled + Triangle::fields, field.begin());
+  const auto energy = [membrane, field](const Corners& x, Corners* force) {
+    double f[Triangle::fields];
+    std::copy(field.begin(), field.end(), f);
+    return std::visit([&]<class M>(const M& m) { return evaluate_one(TriangleFormula<M>(m), f, x, force); }, membrane);
+  };
+  return {"triangle", std::string(name_of(membrane)), rest, energy, 500};
+}
+
 std::vector<Subject> subjects() {
   std::vector<Subject> list;
   int splines = 0;
@@ -94,6 +109,8 @@ std::vector<Subject> subjects() {
   }
   list.push_back(tetrahedron(test::all_materials()[2], Fibre{3e4, {0.6, 0, 0.8}}));
   list.push_back(spring());
+  for (const Membrane& membrane : test::all_membranes()) list.push_back(triangle(membrane));
+  for (std::size_t m : {2, 4}) list[list.size() - m].material += ", gives way";
   return list;
 }
 
@@ -195,6 +212,8 @@ TEST(Derivatives, NetForceAndTorqueOfAWholeBodyVanishAtEveryIteration) {
   bodies.push_back(bodies[2]);
   bodies.back().fibres = {Fibre{3e4, {0.6, 0, 0.8}}};
   bodies.push_back(test::spring_net(6));
+  for (const Membrane& membrane : test::all_membranes())
+    bodies.push_back(test::sheet({0.4, 0.4}, {6, 6}, {membrane, 0.01}));
   for (const BodyDescription& body : bodies) {
     const Model model = build_model(body);
     StepInputs inputs = test::still_inputs(model);

@@ -78,6 +78,38 @@ BodyDescription spring_net(int cells) {
   return body;
 }
 
+std::vector<Membrane> all_membranes() {
+  const PlaneLame lame = PlaneLame::from_young(1e6, 0.3, 1e-3);
+  return {PlaneNeoHookean::from(lame, 1), PlaneNeoHookean::from(lame, 0.1), PlaneStVenantKirchhoff::from(lame, 1),
+          PlaneStVenantKirchhoff::from(lame, 0.1), Woven{900, 700, 60, 0.1, 1.2}};
+}
+
+BodyDescription sheet_of(const TriMesh& surface, const Fabric& fabric, double density) {
+  BodyDescription body;
+  body.name = "sheet";
+  body.mesh.rest = surface.points;
+  body.mesh.tets.resize(0, 4);
+  body.precision = Precision::double_precision;
+  body.surface = surface.triangles;
+  body.fabric = fabric;
+  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) {
+    const auto corner = [&](int k) -> Eigen::Vector2d {
+      return surface.points.row(surface.triangles(t, k)).head<2>().transpose();
+    };
+    const Eigen::Vector2d a = corner(1) - corner(0), b = corner(2) - corner(0);
+    body.cloth.push_back(
+        {{surface.triangles(t, 0), surface.triangles(t, 1), surface.triangles(t, 2)}, {a.x(), b.x(), a.y(), b.y()}});
+  }
+  body.point_mass = vertex_areas(surface);
+  for (double& mass : body.point_mass) mass *= density;
+  return body;
+}
+
+BodyDescription sheet(const Eigen::Vector2d& extent, const Eigen::Vector2i& cells, const Fabric& fabric,
+                      double density) {
+  return sheet_of(cloth_grid(extent, cells).surface, fabric, density);
+}
+
 StepInputs still_inputs(const Model& model) {
   StepInputs inputs;
   inputs.targets.resize(model.handled.size(), 3);

@@ -31,6 +31,17 @@ BodyDescription bar(const Material& material, Held held, Precision precision = P
 // Makes a free square of cells x cells springs, 0.4 m wide, in the plane z = 0.
 BodyDescription spring_net(int cells);
 
+// Returns one membrane of each kind, with and without the whole stiffness against compression. [about 1000 N/m]
+std::vector<Membrane> all_membranes();
+
+// Makes a free sheet of cells x cells squares with alternating diagonals, in the plane z = 0, with its lower left
+// corner at the origin. extent: of its sides [m]; density [kg/m^2].
+BodyDescription sheet(const Eigen::Vector2d& extent, const Eigen::Vector2i& cells, const Fabric& fabric,
+                      double density = 0.2);
+
+// Makes cloth of any flat triangles in the plane z = 0.
+BodyDescription sheet_of(const TriMesh& surface, const Fabric& fabric, double density = 0.2);
+
 // Makes inputs for a body whose handles stay where they rest.
 StepInputs still_inputs(const Model& model);
 

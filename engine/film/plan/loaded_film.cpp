@@ -53,7 +53,7 @@ SceneSource source_of(const FilmPlan& plan) {
 
 namespace {
 
-// Returns the XXH64 of the points, elements and springs of a body.
+// Returns the XXH64 of the points and elements of a body.
 std::string mesh_hash(const Body& body) {
   const TetMesh& mesh = body.description.mesh;
   std::uint64_t hash = hash_bytes(mesh.rest.data(), sizeof(double) * mesh.rest.size());
@@ -61,6 +61,10 @@ std::string mesh_hash(const Body& body) {
   for (const Spring& spring : body.description.springs) {
     const std::int32_t ends[] = {spring.from, spring.to};
     hash = hash_bytes(ends, sizeof ends, hash);
+  }
+  for (const FlatTriangle& triangle : body.description.cloth) {
+    hash = hash_bytes(triangle.corner.data(), sizeof triangle.corner, hash);
+    hash = hash_bytes(triangle.edges, sizeof triangle.edges, hash);
   }
   return hash_text_form(hash);
 }
@@ -77,7 +81,7 @@ RunInfo run_info(const FilmPlan& plan, const SceneSource& source, const World& w
   info.threads = plan.threads > 0 ? plan.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   for (const Body& body : world.bodies()) {
     const TetMesh& mesh = body.description.mesh;
-    const auto elements = static_cast<int>(mesh.tets.rows() + body.description.springs.size());
+    const auto elements = static_cast<int>(elements_of(body.description));
     info.meshes.push_back({body.def.name, body.source, mesh_hash(body), int(mesh.rest.rows()), elements});
   }
   return info;

@@ -62,6 +62,7 @@ void FieldWriter::add(int frame, const State& state, const OpenWorkspace& worksp
     grid.corners = {body_.cloth.surface.triangles.data(), std::size_t(body_.cloth.surface.triangles.size())};
     grid.corners_a_cell = 3;
     grid.cell_data = {array_of("stretch", 2, stretch)};
+    if (!fields.cloth_energy.empty()) grid.cell_data.push_back(array_of("energy_density", 1, fields.cloth_energy));
   } else {
     stretch = as_floats(fields.stretch);
     von_mises = as_floats(fields.von_mises);

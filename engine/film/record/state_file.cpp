@@ -80,6 +80,25 @@ Json json_of(const Eigen::Isometry3d& pose) {
   return rows;
 }
 
+Json fabric_json(const Fabric& fabric) {
+  Json json = std::visit(
+      []<class M>(const M& m) -> Json {
+        if constexpr (M::isotropic) {
+          return {{"model", M::name}, {"mu", m.mu}, {"lambda", m.lambda}, {"compression", m.compression}};
+        } else {
+          return {{"model", M::name},
+                  {"warp", m.warp},
+                  {"weft", m.weft},
+                  {"shear", m.shear},
+                  {"compression", m.compression},
+                  {"limit", m.limit}};
+        }
+      },
+      fabric.membrane);
+  json["bending"] = fabric.bending;
+  return json;
+}
+
 Json state_json(const StepLabel& label, const StepProblem& problem) {
   const BodyDescription& body = problem.body;
   Json json = {{"format", "supple-state"},
@@ -98,12 +117,14 @@ Json state_json(const StepLabel& label, const StepProblem& problem) {
                {"vertices", body.mesh.rest.rows()},
                {"tets", body.mesh.tets.rows()},
                {"springs", body.springs.size()},
+               {"triangles", body.cloth.size()},
                {"handled", problem.handled.size()},
                {"regions", regions_json(problem)},
                {"solver", solver_json(problem)},
                {"began_in_single", problem.began_in_single},
                {"colliders", Json::array()},
                {"state_hash", hash_text_form(problem.hash)}};
+  if (!body.cloth.empty()) json["fabric"] = fabric_json(body.fabric);
   for (const StepProblem::Obstacle& collider : problem.colliders) {
     json["colliders"].push_back({{"name", collider.name},
                                  {"thickness", collider.thickness},
@@ -123,6 +144,17 @@ void write_table(const std::filesystem::path& path,
 template <class T>
 void write_list(const std::filesystem::path& path, const std::vector<T>& list) {
   write_npy(path, npy_list(std::int64_t(list.size())), std::span<const T>(list));
+}
+
+void write_triangles(const std::filesystem::path& folder, const std::vector<FlatTriangle>& triangles) {
+  Eigen::Matrix<std::int32_t, Eigen::Dynamic, 3, Eigen::RowMajor> corners(triangles.size(), 3);
+  Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> edges(triangles.size(), 4);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) corners(Eigen::Index(t), k) = triangles[t].corner[std::size_t(k)];
+    for (int i = 0; i < 4; ++i) edges(Eigen::Index(t), i) = triangles[t].edges[i];
+  }
+  write_table(folder / "triangles.npy", corners);
+  write_table(folder / "flat_edges.npy", edges);
 }
 
 void write_springs(const std::filesystem::path& folder, const std::vector<Spring>& springs) {
@@ -186,6 +218,7 @@ void write_state(const std::filesystem::path& folder, const StepLabel& label, co
   write_list(folder / "regions.npy", regions);
   write_list(folder / "mass.npy", problem.mass);
   if (!problem.body.springs.empty()) write_springs(folder, problem.body.springs);
+  if (!problem.body.cloth.empty()) write_triangles(folder, problem.body.cloth);
   std::vector<std::int32_t> handled;
   std::vector<double> stiffness;
   for (const StepProblem::Handled& each : problem.handled) {

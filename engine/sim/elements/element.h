@@ -6,22 +6,33 @@
 
 #include "sim/elements/spring.h"
 #include "sim/elements/tetrahedron.h"
+#include "sim/elements/triangle.h"
 
 namespace supple {
 
-enum class ElementKind { tetrahedron, spring };
+enum class ElementKind { tetrahedron, spring, triangle };
 
 constexpr int most_corners = 4;
 constexpr int most_fields = 10;
 
 // The last field of every kind is the element's weight: padding lanes have 0 there.
 constexpr int corners_of(ElementKind kind) {
-  return kind == ElementKind::tetrahedron ? Tetrahedron::corners : SpringElement::corners;
+  switch (kind) {
+    case ElementKind::tetrahedron: return Tetrahedron::corners;
+    case ElementKind::spring: return SpringElement::corners;
+    case ElementKind::triangle: break;
+  }
+  return Triangle::corners;
 }
 // Counts the pairs (a, b), a >= b, of an element's corners.
 constexpr int corner_pairs(int corners) { return corners * (corners + 1) / 2; }
 constexpr int fields_of(ElementKind kind) {
-  return kind == ElementKind::tetrahedron ? Tetrahedron::fields : SpringElement::fields;
+  switch (kind) {
+    case ElementKind::tetrahedron: return Tetrahedron::fields;
+    case ElementKind::spring: return SpringElement::fields;
+    case ElementKind::triangle: break;
+  }
+  return Triangle::fields;
 }
 
 }  // namespace supple

@@ -5,6 +5,7 @@
 #include "sim/elements/element_corners.h"
 #include "sim/elements/element_registers.h"
 #include "sim/elements/tetrahedron_scalar_stiffness.h"
+#include "sim/elements/triangle_stiffness.h"
 
 namespace supple {
 namespace {
@@ -51,6 +52,9 @@ double run_blocks(const Formula& formula, const ElementChunk& chunk, const doubl
 template <class Run>
 double dispatch(const ElementChunk& chunk, const Run& run) {
   if (chunk.kind == ElementKind::spring) return run(SpringElement{});
+  if (chunk.kind == ElementKind::triangle) {
+    return std::visit([&]<class M>(const M& sheet) { return run(TriangleFormula<M>(sheet)); }, *chunk.membrane);
+  }
   return std::visit(
       [&]<class M>(const M& material) {
         return chunk.fibre != nullptr ? run(TetrahedronFormula<M, true>(material, chunk.fibre))

@@ -22,6 +22,7 @@ struct ElementChunk {
   ElementKind kind;
   const Material* material;  // of tetrahedra
   const Fibre* fibre;        // of tetrahedra; null: no fibres
+  const Membrane* membrane;  // of triangles
   int blocks;
   int vertices;                 // length of the chunk's list
   const std::int32_t* vertex;   // the list: mesh vertices
@@ -54,7 +55,7 @@ struct ElementKernels {
   void (*scalar_stiffness)(const ElementChunk& chunk, const double* x, double axial, double* out);
 
   // Writes for each lane the largest stretch, and the volume over the rest volume, which is negative where an element
-  // is inverted.
+  // is inverted, and 1 for elements that have none.
   void (*stretches)(const ElementChunk& chunk, const double* x, double* largest, double* volume);
 
   // Replaces matrices by the rotations of their polar decompositions (polar_rotation.h). They are stored in blocks of
@@ -62,8 +63,11 @@ struct ElementKernels {
   void (*rotations)(double* matrices, int blocks);
 };
 
-constexpr int stiffness_numbers(ElementKind kind) { return kind == ElementKind::tetrahedron ? 45 : 6; }
-constexpr int scalar_numbers(ElementKind kind) { return kind == ElementKind::tetrahedron ? 6 : 1; }
+constexpr int stiffness_numbers(ElementKind kind) {
+  const int inner = 3 * (corners_of(kind) - 1);
+  return inner * (inner + 1) / 2;
+}
+constexpr int scalar_numbers(ElementKind kind) { return corner_pairs(corners_of(kind) - 1); }
 
 // Returns the loops of the widest variant that this machine can run, or of any variant that it can (base/variants.h).
 const ElementKernels& element_kernels();

@@ -1,5 +1,8 @@
 #include "sim/elements/element_records.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace supple {
 namespace {
 
@@ -26,14 +29,23 @@ void shape_gradients(const ElementRecord& element, std::array<std::array<double,
 
 }  // namespace
 
-std::vector<ElementRecord> element_records(const TetMesh& mesh, const std::vector<Spring>& springs) {
+std::vector<ElementRecord> element_records(const TetMesh& mesh, const std::vector<Spring>& springs,
+                                           const std::vector<FlatTriangle>& triangles) {
   std::vector<ElementRecord> records;
-  records.reserve(mesh.tets.rows() + springs.size());
+  records.reserve(mesh.tets.rows() + springs.size() + triangles.size());
   for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) records.push_back(tetrahedron(mesh, e));
   for (std::size_t s = 0; s < springs.size(); ++s) {
     ElementRecord record{ElementKind::spring, 0, static_cast<std::int32_t>(s)};
     record.corner = {springs[s].from, springs[s].to};
     record.field = {springs[s].length, springs[s].stiffness};
+    records.push_back(record);
+  }
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    ElementRecord record{ElementKind::triangle, 0, static_cast<std::int32_t>(t)};
+    std::copy(triangles[t].corner.begin(), triangles[t].corner.end(), record.corner.begin());
+    double field[Triangle::fields];
+    Triangle::fill(triangles[t].edges, field);
+    std::copy(field, field + Triangle::fields, record.field.begin());
     records.push_back(record);
   }
   return records;
@@ -46,8 +58,19 @@ SystemTerm unit_term(const ElementRecord& element) {
     term.row[1][0] = 1;
     return term;
   }
+  if (element.kind == ElementKind::triangle) return membrane_term(element, {{1, 1}});
   SystemTerm term{{}, element.field[9]};
   shape_gradients(element, term.row);
+  return term;
+}
+
+SystemTerm membrane_term(const ElementRecord& element, const MembraneStiffness& stiffness) {
+  SystemTerm term{{}, element.field[4]};
+  double gradient[3][2];
+  Triangle::shape_gradients(element.field.data(), gradient);
+  for (int c = 0; c < 3; ++c) {
+    for (int j = 0; j < 2; ++j) term.row[c][j] = std::sqrt(stiffness.along[j]) * gradient[c][j];
+  }
   return term;
 }
 

@@ -17,16 +17,25 @@ struct Spring {
   double stiffness;       // [N/m]
 };
 
+// Describes a triangle of cloth as it lies in the flat pattern, where the first direction is that of the warp.
+struct FlatTriangle {
+  std::array<std::int32_t, 3> corner;  // vertices of the mesh, in its own numbering
+  double edges[4];                     // from corner 0 to corners 1 and 2, as columns of a matrix, row by row [m]
+
+  double area() const { return 0.5 * (edges[0] * edges[3] - edges[1] * edges[2]); }  // above 0 [m^2]
+};
+
 struct ElementRecord {
   ElementKind kind;
-  int region;          // of a tetrahedron: the region of the mesh that it belongs to
+  int region;          // of a tetrahedron: the region of the mesh that it belongs to; of a triangle: its fabric
   std::int32_t input;  // index among the input's elements of this kind
   std::array<std::int32_t, most_corners> corner{};
   std::array<double, most_fields> field{};
 };
 
-// Lists the tetrahedra first, then the springs; corners have the mesh's numbering.
-std::vector<ElementRecord> element_records(const TetMesh& mesh, const std::vector<Spring>& springs);
+// Lists the tetrahedra first, then the springs, then the triangles; corners have the mesh's numbering.
+std::vector<ElementRecord> element_records(const TetMesh& mesh, const std::vector<Spring>& springs,
+                                           const std::vector<FlatTriangle>& triangles);
 
 // Holds the share of an element in L = sum_e G_e^T (weight) G_e: the rows of G_e^T, one for each corner, and their
 // weight [N/m].
@@ -35,8 +44,12 @@ struct SystemTerm {
   double weight;
 };
 
-// Returns the term of a material with k = 1 Pa, or of a spring with a stiffness of 1 N/m.
+// Returns the term of a material with k = 1 Pa, of a spring with a stiffness of 1 N/m, or of a triangle whose two
+// directions have 1 N/m.
 SystemTerm unit_term(const ElementRecord& element);
+
+// Returns the term of a triangle.
+SystemTerm membrane_term(const ElementRecord& element, const MembraneStiffness& stiffness);
 
 // Returns the term of a tetrahedron's fibres.
 SystemTerm fibre_term(const ElementRecord& element, const Fibre& fibre);

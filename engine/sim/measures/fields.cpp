@@ -39,6 +39,20 @@ void add_tetrahedra(const Model& model, const Model::ChunkRange& range, const M&
   });
 }
 
+void add_triangles(const Model& model, const Model::ChunkRange& range, const Membrane& membrane, const Positions& x,
+                   ElementFields& fields) {
+  for_each_element(model, range, [&](const ElementView& element) {
+    double corners[3][3], field[Triangle::fields], force[2][3];
+    for (int k = 0; k < 3; ++k) {
+      for (int i = 0; i < 3; ++i) corners[k][i] = x(element.corner[k], i);
+    }
+    std::copy_n(element.field.begin(), Triangle::fields, field);
+    const double energy = std::visit(
+        [&]<class M>(const M& sheet) { return TriangleFormula<M>(sheet).energy(corners, field, force); }, membrane);
+    fields.cloth_energy[element.input] = energy / field[4];
+  });
+}
+
 void add_springs(const Model& model, const Model::ChunkRange& range, const Positions& x, ElementFields& fields) {
   for_each_element(model, range, [&](const ElementView& element) {
     double ends[2][3], field[SpringElement::fields], force[1][3];
@@ -55,16 +69,24 @@ void add_springs(const Model& model, const Model::ChunkRange& range, const Posit
 
 ElementFields element_fields(const Model& model, const Positions& x) {
   ElementFields fields;
-  int solids = 0;
-  for_each_element(model, [&](const ElementView& element) { solids += element.kind == ElementKind::tetrahedron; });
+  int solids = 0, triangles = 0;
+  for_each_element(model, [&](const ElementView& element) {
+    solids += element.kind == ElementKind::tetrahedron;
+    triangles += element.kind == ElementKind::triangle;
+  });
   fields.stretch.resize(solids, 3);
   fields.von_mises.resize(solids);
   fields.energy.resize(solids);
-  if (solids < model.elements) fields.spring_energy.assign(model.vertices, 0.0);
+  fields.cloth_energy.resize(triangles);
+  if (solids + triangles < model.elements) fields.spring_energy.assign(model.vertices, 0.0);
   for (std::size_t c = 0; c < model.chunks.size(); ++c) {
     const Model::ChunkRange& range = model.chunks[c];
     if (range.kind == ElementKind::spring) {
       add_springs(model, range, x, fields);
+      continue;
+    }
+    if (range.kind == ElementKind::triangle) {
+      add_triangles(model, range, model.fabrics[range.region].membrane, x, fields);
       continue;
     }
     const Fibre* fibre = model.chunk(static_cast<int>(c)).fibre;

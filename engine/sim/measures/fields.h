@@ -19,6 +19,7 @@ struct ElementFields {
   // This field has one entry for each vertex of the input: half of the energy of each spring that ends there. It is
   // empty without springs.
   std::vector<double> spring_energy;  // [J]
+  std::vector<double> cloth_energy;   // of triangles, by area at rest, without bending [J/m^2]
 };
 
 // Returns von Mises' equivalent of Cauchy's stress P F^T / det F; NaN where det F = 0. piola: P, in the unit of the

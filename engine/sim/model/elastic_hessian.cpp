@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "sim/model/bending.h"
 #include "sim/model/element_view.h"
 
 namespace supple {
@@ -64,6 +65,12 @@ ElasticHessian::ElasticHessian(const Model& model) {
       }
     }
   });
+  for (int v = 0; v < model.free && !model.bending.begin.empty(); ++v) {
+    for (std::int32_t k = model.bending.begin[v]; k < model.bending.begin[v + 1]; ++k) {
+      if (model.bending.column[k] > v && model.bending.column[k] < model.free)
+        entries.emplace_back(v, model.bending.column[k]);
+    }
+  }
   // Contact couples the vertices of a triangle, which springs need not do.
   for (Eigen::Index t = 0; t < model.surface.rows(); ++t) {
     for (const std::int32_t row : model.surface.row(t)) {
@@ -166,12 +173,17 @@ void ElasticHessian::assemble(const Model& model, const ElementMatrices& element
   for (int v = 0; v < model.free; ++v) {
     double own = model.scheme.inertia * model.mass[v] * inverse_h2;
     if (!model.handle_stiffness.empty()) own += scale * model.handle_stiffness[v];
+    const auto add_row = [&](const Model::SparseRows& rows, double factor) {
+      if (rows.begin.empty()) return;
+      for (std::int32_t k = rows.begin[v]; k < rows.begin[v + 1]; ++k) {
+        const std::int32_t row = rows.column[k];
+        if (row >= v && row < model.free) add(row, v, factor * rows.value[k] * Mat3::Identity());
+      }
+    };
+    add_row(model.damping, 1);
+    add_row(model.bending, scale);
+    if (!model.bending.begin.empty()) own += scale * bending_diagonal(model.bending, v);
     add(v, v, own * Mat3::Identity());
-    if (model.damping.begin.empty()) continue;
-    for (std::int32_t k = model.damping.begin[v]; k < model.damping.begin[v + 1]; ++k) {
-      const std::int32_t row = model.damping.column[k];
-      if (row >= v && row < model.free) add(row, v, model.damping.value[k] * Mat3::Identity());
-    }
   }
 }
 

@@ -64,8 +64,9 @@ void place_surfaces(const std::vector<const Model*>& bodies, Model& joined) {
 // Appends the elements of a body, whose regions follow those of the bodies before it.
 void add_elements(const Model& body, const Part& part, Model& joined) {
   const auto regions = static_cast<int>(joined.materials.size());
+  const auto fabrics = static_cast<int>(joined.fabrics.size());
   for (Model::ChunkRange chunk : body.chunks) {
-    chunk.region += regions;
+    chunk.region += chunk.kind == ElementKind::triangle ? fabrics : regions;
     chunk.first_block += joined.blocks;
     chunk.first_vertex += static_cast<int>(joined.chunk_vertex.size());
     chunk.first_corner += joined.corner.size();
@@ -77,6 +78,9 @@ void add_elements(const Model& body, const Part& part, Model& joined) {
   joined.largest_chunk = std::max(joined.largest_chunk, body.largest_chunk);
   joined.materials.insert(joined.materials.end(), body.materials.begin(), body.materials.end());
   joined.stiffness.insert(joined.stiffness.end(), body.stiffness.begin(), body.stiffness.end());
+  joined.fabrics.insert(joined.fabrics.end(), body.fabrics.begin(), body.fabrics.end());
+  joined.fabric_stiffness.insert(joined.fabric_stiffness.end(), body.fabric_stiffness.begin(),
+                                 body.fabric_stiffness.end());
   if (!body.fibres.empty()) {
     joined.fibres.resize(std::size_t(regions));
     joined.fibres.insert(joined.fibres.end(), body.fibres.begin(), body.fibres.end());
@@ -104,18 +108,20 @@ void add_handles(const Model& body, const Part& part, Model& joined) {
             joined.handle_stiffness.begin() + part.first_free);
 }
 
-void join_damping(const std::vector<const Model*>& bodies, Model& joined) {
-  const bool none = std::ranges::all_of(bodies, [](const Model* body) { return body->damping.begin.empty(); });
+// Joins the rows of damping, or of bending.
+void join_rows(const std::vector<const Model*>& bodies, Model::SparseRows Model::*rows, Model& joined) {
+  const bool none = std::ranges::all_of(bodies, [&](const Model* body) { return (body->*rows).begin.empty(); });
   if (none) return;
-  joined.damping.begin.push_back(0);
+  Model::SparseRows& all = joined.*rows;
+  all.begin.push_back(0);
   const auto add_rows = [&](std::size_t p, std::int32_t first, std::int32_t count) {
-    const Model::SparseRows& own = bodies[p]->damping;
+    const Model::SparseRows& own = bodies[p]->*rows;
     for (std::int32_t v = first; v < first + count; ++v) {
       for (std::int32_t i = own.begin.empty() ? 0 : own.begin[v]; !own.begin.empty() && i < own.begin[v + 1]; ++i) {
-        joined.damping.column.push_back(joined_vertex(joined.parts[p], own.column[i]));
-        joined.damping.value.push_back(own.value[i]);
+        all.column.push_back(joined_vertex(joined.parts[p], own.column[i]));
+        all.value.push_back(own.value[i]);
       }
-      joined.damping.begin.push_back(static_cast<std::int32_t>(joined.damping.column.size()));
+      all.begin.push_back(static_cast<std::int32_t>(all.column.size()));
     }
   };
   for (std::size_t p = 0; p < bodies.size(); ++p) add_rows(p, 0, joined.parts[p].free);
@@ -187,7 +193,8 @@ Model join(const std::vector<const Model*>& bodies) {
   }
   if (!joined.fibres.empty()) joined.fibres.resize(joined.materials.size());
   joined.mean_stiffness = stiffness / joined.elements;
-  join_damping(bodies, joined);
+  join_rows(bodies, &Model::damping, joined);
+  join_rows(bodies, &Model::bending, joined);
   join_systems(bodies, joined);
   return joined;
 }

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/error.h"
+#include "sim/model/bending.h"
 #include "sim/model/model_values.h"
 
 namespace supple {
@@ -30,6 +31,7 @@ void number_vertices(Model& model, const BodyDescription& body, const std::vecto
     }
   }
   for (const Spring& spring : body.springs) join(spring.from, spring.to);
+  for (const auto& [from, to] : joined_by_cloth(body.cloth, body.fabric.bending > 0)) join(from, to);
   for (const std::int32_t i : fill_reducing_order(model.free, edges)) model.input_of.push_back(free_input[i]);
   for (std::int32_t v = 0; v < model.vertices; ++v) {
     if (held[v]) model.input_of.push_back(v);
@@ -132,12 +134,20 @@ ElementChunk Model::chunk(int index) const {
   return {c.kind,
           solid ? &materials[c.region] : nullptr,
           solid && !fibres.empty() && fibres[c.region].kappa > 0 ? &fibres[c.region] : nullptr,
+          c.kind == ElementKind::triangle ? &fabrics[c.region].membrane : nullptr,
           c.blocks,
           c.vertices,
           chunk_vertex.data() + c.first_vertex,
           corner.data() + c.first_corner,
           field.data() + c.first_field,
           single_field.data() + c.first_field};
+}
+
+SystemTerm Model::system_term(const ElementRecord& element) const {
+  if (element.kind == ElementKind::triangle) return membrane_term(element, fabric_stiffness[element.region]);
+  SystemTerm term = unit_term(element);
+  term.weight *= element.kind == ElementKind::tetrahedron ? stiffness[element.region].k : element.field[1];
+  return term;
 }
 
 std::size_t Model::part_number(std::int32_t vertex) const {
@@ -161,6 +171,10 @@ Model build_model(const BodyDescription& body) {
   model.vertices = static_cast<int>(body.mesh.rest.rows());
   for (const int region : body.mesh.regions) SUPPLE_CHECK(std::size_t(region), <, body.materials.size());
   for (const Spring& spring : body.springs) SUPPLE_CHECK(std::max(spring.from, spring.to), <, model.vertices);
+  for (const FlatTriangle& triangle : body.cloth) {
+    SUPPLE_CHECK(*std::ranges::max_element(triangle.corner), <, model.vertices);
+    SUPPLE_CHECK(triangle.area(), >, 0);
+  }
 
   std::vector<char> held(model.vertices, 0), has_spring(model.vertices, 0);
   for (const Handle& handle : body.handles) {

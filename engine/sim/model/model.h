@@ -50,7 +50,9 @@ struct BodyDescription {
   TetMesh mesh;                     // in its place in the world at rest
   std::vector<Material> materials;  // by region tag of the elements
   std::vector<Fibre> fibres;        // by region tag; empty: none
-  std::vector<Spring> springs;      // beside the tetrahedra or, for cloth, instead of them
+  std::vector<Spring> springs;      // beside the tetrahedra or, for cloth of springs, instead of them
+  std::vector<FlatTriangle> cloth;  // the triangles of cloth that is a continuum, instead of both
+  Fabric fabric;                    // of these triangles
   Triangles surface;                // the surface that contact sees; empty: the boundary of the tetrahedra
   // How far what is drawn reaches beyond this surface, by vertex; contact with other bodies begins there. Empty:
   // nowhere [m]
@@ -64,6 +66,11 @@ struct BodyDescription {
   StretchInterval fit;                                // equation 11
   Precision precision = Precision::single_precision;  // of the factor, hence of search directions
 };
+
+// Counts the elements of a body.
+inline std::size_t elements_of(const BodyDescription& body) {
+  return std::size_t(body.mesh.tets.rows()) + body.springs.size() + body.cloth.size();
+}
 
 // Describes one of the bodies of a model. Elements never join two of them, so that A is block-diagonal by parts.
 struct Part {
@@ -106,6 +113,9 @@ struct Model : System {
   std::vector<Material> materials;         // by region
   std::vector<Fibre> fibres;               // by region; empty: none
   std::vector<SystemStiffness> stiffness;  // k by region
+  // These two have one entry for each body of triangles; the region of their chunks is its number.
+  std::vector<Fabric> fabrics;
+  std::vector<MembraneStiffness> fabric_stiffness;  // what stands for the fabrics in L
 
   // Elements are stored in blocks of block_width; the layouts are those of ElementChunk.
   int elements = 0;
@@ -139,15 +149,18 @@ struct Model : System {
   std::vector<HandleVertex> handled;     // the order of StepInputs::targets
   std::vector<double> handle_stiffness;  // of the spring at each free vertex, 0: none [N/m]; empty when all are hard
 
-  // Holds (beta/h) L over all vertices, by row; empty without damping. [N/m]
+  // Holds a symmetric matrix over all vertices, by row.
   struct SparseRows {
-    std::vector<std::int32_t> begin;  // n + 1
+    std::vector<std::int32_t> begin;  // n + 1; empty where the matrix is zero
     std::vector<std::int32_t> column;
     std::vector<double> value;
   };
-  SparseRows damping;
+  SparseRows damping;  // (beta/h) L [N/m]
+  SparseRows bending;  // Q of bending.h, without its diagonal [N/m]
 
   ElementChunk chunk(int index) const;
+  // Returns an element's share of L, without that of fibres.
+  SystemTerm system_term(const ElementRecord& element) const;
   double overhang_at(std::int32_t vertex) const { return overhang.empty() ? 0 : overhang[std::size_t(vertex)]; }  // [m]
   std::size_t part_number(std::int32_t vertex) const;  // of the part that a vertex belongs to
   const Part& part_of(std::int32_t vertex) const { return parts[part_number(vertex)]; }

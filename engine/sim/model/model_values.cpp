@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "sim/model/bending.h"
 
 namespace supple {
 namespace {
@@ -24,7 +25,8 @@ void sort_elements(const Model& model, std::vector<ElementRecord>& elements) {
 }
 
 // Returns the pattern of L over all vertices, both triangles, diagonal included.
-Eigen::SparseMatrix<double> pattern_of(const Model& model, const std::vector<ElementRecord>& elements) {
+Eigen::SparseMatrix<double> pattern_of(const Model& model, const std::vector<ElementRecord>& elements,
+                                       const Eigen::SparseMatrix<double>& bending) {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(elements.size() * 16 + model.vertices);
   for (int v = 0; v < model.vertices; ++v) entries.emplace_back(v, v, 0.0);
@@ -33,6 +35,10 @@ Eigen::SparseMatrix<double> pattern_of(const Model& model, const std::vector<Ele
       for (int b = 0; b < corners_of(element.kind); ++b)
         entries.emplace_back(element.corner[a], element.corner[b], 0.0);
     }
+  }
+  for (int column = 0; column < bending.outerSize(); ++column) {
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(bending, column); entry; ++entry)
+      entries.emplace_back(static_cast<int>(entry.row()), column, 0.0);
   }
   Eigen::SparseMatrix<double> matrix(model.vertices, model.vertices);
   matrix.setFromTriplets(entries.begin(), entries.end());
@@ -125,9 +131,10 @@ std::uint64_t new_values() {
 }
 
 ModelValues::ModelValues(const Model& model, const BodyDescription& body)
-    : elements_(element_records(body.mesh, body.springs)) {
+    : elements_(element_records(body.mesh, body.springs, body.cloth)) {
   sort_elements(model, elements_);
-  elastic_ = pattern_of(model, elements_);
+  if (body.fabric.bending > 0) unit_bending_ = bending_matrix(model, body.cloth);
+  elastic_ = pattern_of(model, elements_, unit_bending_);
   place_.reserve(elements_.size() * 16);
   for (const ElementRecord& element : elements_) {
     share_.resize(place_.size() + pairs_of(element));
@@ -144,19 +151,45 @@ ModelValues::ModelValues(const Model& model, const BodyDescription& body)
 }
 
 // Sums up L = sum_e V_e k_e G_e^T G_e (equation 8 of the paper with its k).
-void ModelValues::add_up_elastic(const Model& model) {
+void ModelValues::add_up_elastic(Model& model) {
   double* values = elastic_.valuePtr();
   std::fill(values, values + elastic_.nonZeros(), 0.0);
   std::size_t at = 0;
   for (const ElementRecord& element : elements_) {
     const bool solid = element.kind == ElementKind::tetrahedron;
     const std::size_t first = at;
+    if (element.kind == ElementKind::triangle) {
+      add_term(model.system_term(element), corners_of(element.kind), &place_[first], values);
+      at += pairs_of(element);
+      continue;
+    }
     const double k = solid ? model.stiffness[element.region].k : element.field[1];
     for (const std::size_t end = at + pairs_of(element); at < end; ++at) values[place_[at]] += k * share_[at];
     if (solid && !model.fibres.empty()) {
       const Fibre& fibre = model.fibres[element.region];
       if (fibre.kappa > 0) add_term(fibre_term(element, fibre), corners_of(element.kind), &place_[first], values);
     }
+  }
+  add_bending(model);
+}
+
+// Adds Q to L, whose pattern has that of Q in it, and sets the rows by which the objective evaluates it.
+void ModelValues::add_bending(Model& model) {
+  model.bending = {};
+  if (unit_bending_.nonZeros() == 0) return;
+  const double stiffness = model.fabrics.front().bending;
+  double* values = elastic_.valuePtr();
+  model.bending.begin.push_back(0);
+  for (int column = 0; column < unit_bending_.outerSize(); ++column) {
+    const int* rows = elastic_.innerIndexPtr() + elastic_.outerIndexPtr()[column];
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(unit_bending_, column); entry; ++entry) {
+      while (*rows != entry.row()) ++rows;
+      values[rows - elastic_.innerIndexPtr()] += stiffness * entry.value();
+      if (entry.row() == column) continue;
+      model.bending.column.push_back(static_cast<std::int32_t>(entry.row()));
+      model.bending.value.push_back(stiffness * entry.value());
+    }
+    model.bending.begin.push_back(static_cast<std::int32_t>(model.bending.column.size()));
   }
 }
 
@@ -165,6 +198,10 @@ namespace {
 // Returns an element's part of Model::strain_stiffness [J].
 double strain_stiffness(const Model& model, const ElementRecord& element) {
   if (element.kind == ElementKind::spring) return element.field[1] * element.field[0] * element.field[0];
+  if (element.kind == ElementKind::triangle) {
+    const auto& [warp, weft] = model.fabric_stiffness[element.region].along;
+    return std::max(warp, weft) * element.field[4];
+  }
   const double fibre = model.fibres.empty() ? 0 : model.fibres[element.region].kappa;
   return (model.stiffness[element.region].k + fibre) * element.field[9];
 }
@@ -221,7 +258,13 @@ void ModelValues::set(Model& model, const BodyDescription& body) {
     model.energy_may_be_negative |= energy_may_be_negative(material);
     model.has_slack |= has_slack(material);
   }
-  SUPPLE_CHECK(elements_.size(), ==, std::size_t(body.mesh.tets.rows()) + body.springs.size());
+  model.fabrics.clear();
+  model.fabric_stiffness.clear();
+  if (!body.cloth.empty()) {
+    model.fabrics.push_back(body.fabric);
+    model.fabric_stiffness.push_back(system_stiffness(body.fabric.membrane, body.fit.start, body.fit.end));
+  }
+  SUPPLE_CHECK(elements_.size(), ==, elements_of(body));
   for (ElementRecord& element : elements_) {
     if (element.kind == ElementKind::spring) element.field[1] = body.springs[element.input].stiffness;
   }

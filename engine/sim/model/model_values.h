@@ -25,12 +25,14 @@ class ModelValues {
   void set(Model& model, const BodyDescription& body);
 
  private:
-  void add_up_elastic(const Model& model);
+  void add_up_elastic(Model& model);
+  void add_bending(Model& model);
   Eigen::SparseMatrix<double> system_matrix(Model& model, double damping) const;
 
   std::vector<ElementRecord> elements_;
-  Eigen::SparseMatrix<double> elastic_;  // L over all vertices, both triangles [N/m]
-  std::vector<std::int32_t> place_;      // place of each element's pairs of corners among elastic_'s numbers
+  Eigen::SparseMatrix<double> elastic_;       // L over all vertices, both triangles [N/m]
+  Eigen::SparseMatrix<double> unit_bending_;  // Q for a bending stiffness of 1 N m; empty without bending [1/m^2]
+  std::vector<std::int32_t> place_;           // place of each element's pairs of corners among elastic_'s numbers
   std::vector<double> share_;  // what each pair adds at its place, for k = 1 [m], or a spring's stiffness of 1
 };
 

@@ -35,14 +35,13 @@ void StiffnessSample::take(const Model& model, const Positions& x, const Tangent
     element_kernels().scalar_stiffness(model.chunk(static_cast<int>(c)), x.data(), shares.axial, numbers);
     const int inner = corners_of(range.kind) - 1, count = scalar_numbers(range.kind);
     for_each_element(model, range, [&](const ElementView& element) {
-      const SystemTerm term = unit_term(element);
-      const double k = element.kind == ElementKind::tetrahedron ? model.stiffness[element.region].k : element.field[1];
+      const SystemTerm term = model.system_term(element);
       const double* own = numbers + std::size_t(element.lane - range.first_block * block_width) * count;
       for (int a = 1, at = 0; a <= inner; ++a) {
         for (int b = 1; b <= a; ++b, ++at) {
           double product = 0;
           for (int i = 0; i < 3; ++i) product += term.row[a][i] * term.row[b][i];
-          total_ += std::abs(shares.tangent * own[at] + shares.constant * k * term.weight * product);
+          total_ += std::abs(shares.tangent * own[at] + shares.constant * term.weight * product);
         }
       }
     });

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/trace.h"
+#include "sim/model/bending.h"
 #include "sim/model/element_view.h"
 
 namespace supple {
@@ -120,6 +121,14 @@ void TangentSystem::Parts::add_vertices(const Model& of) {
         const std::int32_t at = place_of(of, of.damping.column[k], v);
         const double value = shares.tangent * of.damping.value[k];
         (at >= 0 ? values[at] : couplings[~at].value) += value;
+      }
+    }
+    if (!of.bending.begin.empty()) {
+      values[own] += springs * bending_diagonal(of.bending, v);
+      for (std::int32_t k = of.bending.begin[v]; k < of.bending.begin[v + 1]; ++k) {
+        if (of.bending.column[k] < v) continue;
+        const std::int32_t at = place_of(of, of.bending.column[k], v);
+        (at >= 0 ? values[at] : couplings[~at].value) += springs * of.bending.value[k];
       }
     }
     diagonal[v] = values[own];

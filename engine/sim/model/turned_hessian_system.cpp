@@ -22,15 +22,15 @@ double share_in(const Material& material) {
   return std::holds_alternative<StrainLimiting>(material) ? 1.0 : share_of_constant;
 }
 
-// Mixes k V G^T G, which is the same for x, y and z, into an element's packed matrix (element_kernels.h).
-void mix(double* packed, const SystemTerm& term, int corners, double k, double share) {
+// Mixes an element's share of L, which is the same for x, y and z, into its packed matrix (element_kernels.h).
+void mix(double* packed, const SystemTerm& term, int corners, double share) {
   for (int i = 0; i < 3 * (corners - 1); ++i) {
     double* row = packed + i * (i + 1) / 2;
     for (int j = 0; j <= i; ++j) {
       row[j] *= 1 - share;
       if (i % 3 != j % 3) continue;
       const auto &a = term.row[1 + i / 3], &b = term.row[1 + j / 3];
-      row[j] += share * k * term.weight * (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+      row[j] += share * term.weight * (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
     }
   }
 }
@@ -70,8 +70,8 @@ void TurnedHessianSystem::Parts::mix_elements(const Model& of) {
     const double share = solid ? share_in(of.materials[range.region]) : share_of_constant;
     for_each_element(of, range, [&](const ElementView& element) {
       const std::size_t lane = std::size_t(element.lane) - std::size_t(range.first_block) * block_width;
-      mix(&elements.numbers[elements.first[c] + lane * stiffness_numbers(range.kind)], unit_term(element),
-          corners_of(range.kind), solid ? of.stiffness[range.region].k : element.field[1], share);
+      mix(&elements.numbers[elements.first[c] + lane * stiffness_numbers(range.kind)], of.system_term(element),
+          corners_of(range.kind), share);
     });
   }
 }

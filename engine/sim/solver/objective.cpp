@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "sim/model/bending.h"
 #include "sim/model/vertex_chunks.h"
 
 namespace supple {
@@ -16,6 +17,12 @@ double quadratic_change(double weight, const double* point, const double* refere
   double sum = 0;
   for (int c = 0; c < 3; ++c) sum += (point[c] - reference[c]) * (point[c] + reference[c] - 2 * center[c]);
   return 0.5 * weight * sum;
+}
+
+double squared_distance(const double* a, const double* b) {
+  double sum = 0;
+  for (int c = 0; c < 3; ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
+  return sum;
 }
 
 double quadratic_value(double weight, const double* point, const double* center) {
@@ -32,6 +39,9 @@ struct VertexTerms {
   const double* reference;  // or null
   double inertia;           // w / h^2 [1/s^2]
   bool springs, damped;
+  // Where the elastic energy is evaluated for the point, and for the reference: the same, or the middle of the step.
+  const double* place;
+  const double* reference_place;  // or null
 
   // Computes row v of beta/h L (p - q).
   void drag(int v, const double* p, double (&sum)[3]) const {
@@ -60,10 +70,38 @@ struct VertexTerms {
     for (int c = 0; c < 3; ++c) gradient[c] = weight * (p[c] - y[c]);
     if (springs && model.handle_stiffness[v] > 0) value += add_spring(v, gradient);
     if (damped) value += add_drag(v, gradient);
+    if (place != nullptr) value += add_bending(v, gradient);
     return value;
   }
 
+  // Adds the bending of held vertices to the value, without a reference.
+  void add_held_bending(double& value) const {
+    double unused[3];
+    for (int v = model.free; v < model.vertices; ++v) {
+      for (double& u : unused) u = 0;
+      value += add_bending(v, unused);
+    }
+  }
+
  private:
+  // Computes e/2 z^T Q z from the squared distances of the vertices that v is joined with, or for the difference e/2 (z
+  // - r)^T Q (z + r), to which held vertices, where z = r, add nothing. The force needs no factor, because e theta = 1.
+  double add_bending(int v, double (&gradient)[3]) const {
+    const std::size_t at = 3 * std::size_t(v);
+    double of_place[3], of_reference[3], value = 0;
+    bending_row(model.bending, place, v, of_place);
+    for (int c = 0; c < 3; ++c) gradient[c] += of_place[c];
+    if (reference_place == nullptr) {
+      for (std::int32_t k = model.bending.begin[v]; k < model.bending.begin[v + 1]; ++k)
+        value -= 0.5 * model.bending.value[k] *
+                 squared_distance(place + at, place + 3 * std::size_t(model.bending.column[k]));
+      return 0.5 * model.scheme.energy * value;
+    }
+    bending_row(model.bending, reference_place, v, of_reference);
+    for (int c = 0; c < 3; ++c) value += (place[at + c] - reference_place[at + c]) * (of_place[c] + of_reference[c]);
+    return 0.5 * model.scheme.energy * value;
+  }
+
   double add_spring(int v, double (&gradient)[3]) const {
     const std::size_t at = 3 * std::size_t(v);
     const double theta = model.scheme.theta, *t = w.target.data() + at;
@@ -162,15 +200,24 @@ Change evaluate_against(const Model& model, OpenWorkspace& workspace, Iterate& a
   at.elastic = change.value + (reference != nullptr ? reference->elastic : 0);
   Positions* gradient = wanted == Wanted::gradient ? &at.gradient : nullptr;
   const Positions* reference_x = reference != nullptr ? &reference->x : nullptr;
+  const bool bends = !model.bending.begin.empty();
+  if (bends && theta < 1 && reference != nullptr)
+    workspace.reference_middle = theta * reference->x + (1 - theta) * workspace.start_copy;
+  const auto place_of = [&](const Positions& x, const Positions& middle) {
+    return theta < 1 ? middle.data() : x.data();
+  };
   const VertexTerms terms{model,
                           workspace,
                           at.x.data(),
                           reference != nullptr ? reference_x->data() : nullptr,
                           model.scheme.inertia / (model.time_step * model.time_step),
                           !model.handle_stiffness.empty(),
-                          !model.damping.begin.empty()};
+                          !model.damping.begin.empty(),
+                          bends ? place_of(at.x, workspace.middle) : nullptr,
+                          bends && reference != nullptr ? place_of(reference->x, workspace.reference_middle) : nullptr};
   add_vertices(model, workspace, terms, gradient, change);
   if (terms.damped && reference == nullptr) terms.add_held_drag(change.value);
+  if (bends && reference == nullptr) terms.add_held_bending(change.value);
   if (!planes.empty()) {
     const ContactChange contacts = add_contacts(planes, at.x, reference_x, workspace.direction, gradient);
     change.value += contacts.value;
@@ -225,7 +272,8 @@ double inertial_energy(const Model& model, const OpenWorkspace& workspace, const
 }
 
 double elastic_energy(const Model& model, OpenWorkspace& workspace, const Positions& x) {
-  return evaluate_elements(model, workspace, x, workspace.trial.energy, Wanted::value, nullptr) / model.scheme.energy;
+  return evaluate_elements(model, workspace, x, workspace.trial.energy, Wanted::value, nullptr) / model.scheme.energy +
+         bending_energy(model, x);
 }
 
 double work_on_held(const Model& model, OpenWorkspace& workspace, const Positions& x, const Positions& q) {
@@ -243,6 +291,11 @@ double work_on_held(const Model& model, OpenWorkspace& workspace, const Position
       if (v < model.free) continue;
       for (int k = 0; k < 3; ++k) work += force[list_stride * i + k] * (x(v, k) - q(v, k));
     }
+  }
+  for (int v = model.bending.begin.empty() ? model.vertices : model.free; v < model.vertices; ++v) {
+    double row[3];
+    bending_row(model.bending, x.data(), v, row);
+    for (int k = 0; k < 3; ++k) work += row[k] * (x(v, k) - q(v, k));
   }
   return work;
 }

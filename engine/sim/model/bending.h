@@ -1,0 +1,45 @@
+// Builds the energy by which cloth resists bending, E = 1/2 tr(x^T Q x) with a constant Q. On a sheet that does not
+// stretch the angle of a hinge is |K x| / l, where K is linear in the positions and l the length of the edge, so that
+// energies which are quadratic in curvature are quadratic in x (Bergou, Wardetzky, Harmon, Zorin, Grinspun 2006, "A
+// quadratic bending model for inextensible surfaces"). Q is part of A as a whole. Which curvature a triangle has
+// follows from all three of its hinges (bending.cpp): a sum of squares over single hinges, as in that paper, depends on
+// how the mesh is made by up to a factor of 3. All cloth is flat at rest. Not here: the evaluation beside elements
+// (solver/objective.cpp).
+#pragma once
+
+#include <vector>
+
+#include "sim/model/model.h"
+
+namespace supple {
+
+using JoinedVertices = std::pair<std::int32_t, std::int32_t>;
+
+// Lists the pairs of vertices that the triangles of a cloth join, each at least once, in their numbering; with_bending:
+// also those that bending joins.
+std::vector<JoinedVertices> joined_by_cloth(const std::vector<FlatTriangle>& triangles, bool with_bending);
+
+// Returns Q over all vertices in the model's numbering, both triangles of it, for a bending stiffness of 1 N m [1/m^2].
+Eigen::SparseMatrix<double> bending_matrix(const Model& model, const std::vector<FlatTriangle>& triangles);
+
+// Computes row v of Q z, from differences, so that it does not depend on where the cloth is [N].
+inline void bending_row(const Model::SparseRows& bending, const double* z, int v, double (&row)[3]) {
+  for (double& sum : row) sum = 0;
+  const double* own = z + 3 * std::size_t(v);
+  for (std::int32_t k = bending.begin[v]; k < bending.begin[v + 1]; ++k) {
+    const double* other = z + 3 * std::size_t(bending.column[k]);
+    for (int c = 0; c < 3; ++c) row[c] += bending.value[k] * (other[c] - own[c]);
+  }
+}
+
+// Returns the diagonal entry of row v of Q, which takes what the others sum up to [N/m].
+inline double bending_diagonal(const Model::SparseRows& bending, int v) {
+  double sum = 0;
+  for (std::int32_t k = bending.begin[v]; k < bending.begin[v + 1]; ++k) sum -= bending.value[k];
+  return sum;
+}
+
+// Returns the energy at x, n x 3 [J].
+double bending_energy(const Model& model, const Positions& x);
+
+}  // namespace supple
