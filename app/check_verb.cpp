@@ -88,16 +88,13 @@ std::vector<Warning> warnings_of(const Checked& checked) {
   return list;
 }
 
-std::size_t parts_of(const Body& body) {
-  return body.def.cloth ? body.description.springs.size() : std::size_t(body.description.mesh.tets.rows());
-}
-
 void say_body(const Body& body, const DrawnBody& drawn, bool verbose) {
   const double crossing = crossing_number(body);
   const std::string skin = verbose ? skin_text(body, drawn) : skin_words(body, drawn);
-  say(stdout, fmt::format("  {}: {} vertices, {} {}, {}{}\n", body.def.name, body.description.mesh.rest.rows(),
-                          parts_of(body), body.def.cloth ? "springs" : "elements", stiffness_words(crossing),
-                          verbose ? fmt::format(" (k h^2 / (rho L^2) = {:.3g})", crossing) : ""));
+  say(stdout,
+      fmt::format("  {}: {} vertices, {} {}, {}{}\n", body.def.name, body.description.mesh.rest.rows(),
+                  elements_of(body.description), body.description.springs.empty() ? "elements" : "springs",
+                  stiffness_words(crossing), verbose ? fmt::format(" (k h^2 / (rho L^2) = {:.3g})", crossing) : ""));
   if (!skin.empty()) say(stdout, fmt::format("    skin: {}\n", skin));
 }
 
@@ -134,11 +131,12 @@ Json json_of(const Checked& checked) {
   json["bodies"] = Json::array();
   for (std::size_t b = 0; b < checked.bodies.size(); ++b) {
     const Body& body = checked.bodies[b];
-    json["bodies"].push_back({{"name", body.def.name},
-                              {"vertices", body.description.mesh.rest.rows()},
-                              {body.def.cloth ? "springs" : "elements", parts_of(body)},
-                              {"crossing_number", crossing_number(body)},
-                              {"skin", skin_text(body, checked.drawn[b])}});
+    json["bodies"].push_back(
+        {{"name", body.def.name},
+         {"vertices", body.description.mesh.rest.rows()},
+         {!body.description.springs.empty() ? "springs" : "elements", elements_of(body.description)},
+         {"crossing_number", crossing_number(body)},
+         {"skin", skin_text(body, checked.drawn[b])}});
   }
   return json;
 }

@@ -27,6 +27,8 @@ std::string cost_text(const World& world, const FrameCost& cost, const Threads& 
 }
 
 std::string substance_text(const Body& body) {
+  if (body.def.cloth && body.def.cloth->fabric)
+    return fmt::format("{} triangles of {}", body.description.cloth.size(), name_of(body.description.fabric.membrane));
   if (body.def.cloth) return fmt::format("{} springs", body.description.springs.size());
   std::vector<std::string> names;
   for (const Material& material : body.description.materials) {

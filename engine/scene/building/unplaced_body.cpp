@@ -1,9 +1,14 @@
 #include "scene/building/unplaced_body.h"
 
+#include <numbers>
+
 #include "base/error.h"
 #include "geometry/files/mesh_file.h"
+#include "geometry/files/surface_file.h"
 #include "geometry/tetrahedra/meshing.h"
 #include "geometry/tetrahedra/tetrahedralize.h"
+#include "geometry/triangles/remesh.h"
+#include "geometry/triangles/welded_surface.h"
 #include "scene/building/skin_overhang.h"
 #include "scene/reading/body_pieces.h"
 #include "scene/reading/shape_reader.h"
@@ -20,14 +25,51 @@ WantedMesh wanted_mesh(const Body& body, const BodyDef& def) {
   return {def.vertices, body.source, content_name(body.files)};
 }
 
-Body body_of_cloth(const ClothDef& def) {
+// Makes triangles of the wanted size. An edge is given as it is in the world, where the body has its size.
+TriMesh of_edge(const TriMesh& surface, double edge, const BodyDef& def, Body& body) {
+  const double scale = def.size ? *def.size / bounds_of(surface.points).extent().maxCoeff() : def.scale;
+  RemeshOptions options;
+  options.edge_length = edge / scale;
+  options.crease_angle = std::numbers::pi;  // fabric has no creases; borders and seams of three sheets stay
+  TriMesh made = remeshed(surface, options, body.source).mesh;
+  body.notes.push_back(fmt::format("{} triangles became {}, with edges of {:.3g} m on the average",
+                                   surface.triangles.rows(), made.triangles.rows(),
+                                   scale * mean_edge(made.triangles, made.points)));
+  return made;
+}
+
+// Reads any triangles for cloth. Vertices at the same place become one, so that seams are sewn.
+TriMesh surface_for_cloth(const BodyDef& def, Body& body) {
+  const ClothDef& cloth = *def.cloth;
+  TriMesh surface;
+  if (!cloth.surface.empty()) {
+    body.source = cloth.surface.string();
+    TriMesh raw = set_up(read_colored_surface(cloth.surface).mesh, def.surface_options);
+    const Eigen::Index triangles = raw.triangles.rows();
+    surface = welded(raw, 1e-6 * bounds_of(raw.points).diagonal(), body.source).mesh;
+    if (surface.triangles.rows() != triangles)
+      body.notes.push_back(
+          fmt::format("{} triangles without area, or repeated, were left out", triangles - surface.triangles.rows()));
+    body.files = {source_of(cloth.surface, surface)};
+  } else {
+    body.source = cloth.mesh.string();
+    surface = read_surface(cloth.mesh);
+    body.files = {source_of(cloth.mesh, surface)};
+  }
+  return cloth.edge ? of_edge(surface, *cloth.edge, def, body) : surface;
+}
+
+Body body_of_cloth(const BodyDef& def) {
+  const ClothDef& cloth = *def.cloth;
   Body body;
-  body.cloth = def.mesh.empty() ? cloth_grid(def.extent, def.cells) : cloth_of(read_surface(def.mesh));
-  if (!def.mesh.empty()) body.files = {source_of(def.mesh, body.cloth.surface)};
+  if (!cloth.surface.empty() || !cloth.mesh.empty()) {
+    body.cloth = cloth_of(surface_for_cloth(def, body));
+  } else {
+    body.cloth = cloth_grid(cloth.extent, cloth.cells);
+    body.source = fmt::format("a grid of {} x {}", cloth.cells.x() + 1, cloth.cells.y() + 1);
+  }
   body.description.mesh.rest = body.cloth.surface.points;
   body.description.mesh.tets.resize(0, 4);
-  body.source =
-      def.mesh.empty() ? fmt::format("a grid of {} x {}", def.cells.x() + 1, def.cells.y() + 1) : def.mesh.string();
   return body;
 }
 
@@ -110,7 +152,7 @@ Body UnplacedBodies::get(const SceneDef& scene, const BodyDef& asked) {
   const std::string key = key_of(def);
   auto known = made_.find(key);
   if (known == made_.end()) {
-    Body made = def.cloth             ? body_of_cloth(*def.cloth)
+    Body made = def.cloth             ? body_of_cloth(def)
                 : def.box             ? body_of_box(*def.box)
                 : !def.mesh.empty()   ? body_of_mesh(def)
                 : def.surface.empty() ? body_of_shape(scene, def, work_)

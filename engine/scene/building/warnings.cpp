@@ -184,6 +184,20 @@ void warn_of_shared_space(const std::vector<Body>& bodies, std::vector<Warning>&
 
 }  // namespace
 
+namespace {
+
+// Tells whether ten iterations leave a cloth behind its motion. A swinging sheet of triangles whose stiffness is 1.3e4
+// times their inertia ends a swing of 1.3 sizes within 0.08 sizes of the solved one, and with 5.5e4 0.4 sizes away.
+bool is_stiff_cloth(const Body& body) {
+  constexpr double most = 3e4;
+  if (!body.def.cloth || !body.def.cloth->fabric) return false;
+  const Positions& rest = body.description.mesh.rest;
+  const double edge = mean_edge(body.cloth.surface.triangles, rest), size = bounds_of(rest).diagonal();
+  return crossing_number(body) * size * size > most * edge * edge;
+}
+
+}  // namespace
+
 double crossing_number(const Body& body) {
   const double h = body.description.time_step, size = bounds_of(body.description.mesh.rest).diagonal();
   double stiffness =
@@ -192,7 +206,13 @@ double crossing_number(const Body& body) {
   if (body.def.cloth) {  // for a sheet: tension by width, over mass by area
     const std::vector<double>& points = body.description.point_mass;
     const std::vector<double> areas = vertex_areas({body.description.mesh.rest, body.cloth.surface.triangles});
-    stiffness = body.def.cloth->stretch;
+    const ClothDef& cloth = *body.def.cloth;
+    stiffness = cloth.stretch;
+    if (cloth.fabric) {
+      const auto [warp, weft] =
+          system_stiffness(cloth.fabric->fabric.membrane, body.def.solver.fit.start, body.def.solver.fit.end).along;
+      stiffness = std::max(warp, weft);
+    }
     density = std::accumulate(points.begin(), points.end(), 0.0) / std::accumulate(areas.begin(), areas.end(), 0.0);
   }
   return stiffness * h * h / (density * size * size);
@@ -254,7 +274,7 @@ std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bo
                                     "solver has one level; solver.levels = 2 mends it",
                                     body.def.name)));
     }
-    if (crossing > stiff_crossing && body.def.solver.settings.iterations <= 10) {
+    if ((crossing > stiff_crossing || is_stiff_cloth(body)) && body.def.solver.settings.iterations <= 10) {
       list.push_back(at(WarningKind::stiffness, body.def.place,
                         fmt::format("body '{}' is stiff for {} iterations a step; more solver.iterations or "
                                     "substeps make its motion sharper",

@@ -246,6 +246,7 @@ class ConfigTable {
   // Returns a colour in sRGB, which a file gives as three numbers or as "#rrggbb".
   Vec3 color(const Key& key, const Vec3& fallback) const;
   std::optional<Vec3> color_if_given(const Key& key) const;
+  // Returns so many points, or with a count of 0 at least one.
   std::vector<Vec3> vectors(const Key& key, std::size_t count) const;
   // Returns a list of at least one whole number from `lowest` on; it is empty when the key is absent or wrong.
   std::vector<int> integers(const Key& key, int lowest) const;

@@ -336,7 +336,8 @@ std::optional<Vec3> ConfigTable::color_if_given(const Key& key) const {
 }
 
 std::vector<Vec3> ConfigTable::vectors(const Key& key, std::size_t count) const {
-  const std::string allowed = fmt::format("{} lists of three numbers", count);
+  const std::string allowed =
+      count > 0 ? fmt::format("{} lists of three numbers", count) : std::string("lists of three numbers");
   const toml::node* node = find(key, "list of points", "required", allowed);
   if (node == nullptr) {
     complain(fmt::format("'{}' is missing: {} ({})", key.name, key.meaning, allowed));
@@ -347,7 +348,7 @@ std::vector<Vec3> ConfigTable::vectors(const Key& key, std::size_t count) const 
     for (const toml::node& element : *list) {
       if (const auto value = as_vector<3>(element)) values.push_back(*value);
     }
-    if (values.size() == count && list->size() == count) return values;
+    if (values.size() == list->size() && !values.empty() && (count == 0 || values.size() == count)) return values;
   }
   wrong(key, *node, allowed + all_usable(*node));
   return {};

@@ -24,25 +24,27 @@
 
 namespace supple {
 
-// Selects vertices of a body by a box, ball, half space or region, or by their numbers. Coordinates are relative to the
-// rest bounding box (0 to 1 along each axis).
+// Selects vertices of a body by a box, ball, half space or region, by their numbers, or as those nearest to points.
+// Coordinates are relative to the rest bounding box (0 to 1 along each axis).
 struct Selection {
-  enum class Kind { region, box, sphere, plane, vertices } kind = Kind::box;
+  enum class Kind { region, box, sphere, plane, vertices, nearest } kind = Kind::box;
   std::string region;
   std::vector<int> vertices;                          // numbers, counted from 1
   Vec3 lower = Vec3(0, 0, 0), upper = Vec3(1, 1, 1);  // box
   Vec3 center = Vec3(0, 0, 0);                        // sphere; a point of the plane
   double radius = 0;                                  // sphere; relative to the longest side
   Vec3 normal = Vec3(0, 1, 0);                        // plane: picks the side that it points to
+  std::vector<Vec3> points;                           // nearest
+  bool border = false;                                // of these, only those on the open border of a cloth
   FilePlace place;                                    // in the file, for messages once the mesh is known
 };
 
 template <>
 struct Names<Selection::Kind> {
   using Kind = Selection::Kind;
-  static constexpr std::array table = {Name{Kind::region, "region"}, Name{Kind::box, "box"},
-                                       Name{Kind::sphere, "sphere"}, Name{Kind::plane, "plane"},
-                                       Name{Kind::vertices, "vertices"}};
+  static constexpr std::array table = {Name{Kind::region, "region"},     Name{Kind::box, "box"},
+                                       Name{Kind::sphere, "sphere"},     Name{Kind::plane, "plane"},
+                                       Name{Kind::vertices, "vertices"}, Name{Kind::nearest, "nearest"}};
 };
 
 struct MotionKey {
@@ -91,11 +93,21 @@ struct BoxDef {
   Eigen::Vector3i cells = Eigen::Vector3i(1, 1, 1);
 };
 
-// Describes a cloth: a grid of springs, or the triangles of a mesh file.
+// Describes what a cloth is made of where it is no net of springs.
+struct FabricDef {
+  Fabric fabric;
+  std::optional<double> usual_density;  // of a preset [kg/m^2]
+};
+
+// Describes a cloth: a grid, the triangles of a mesh file, or those of a surface. It is made of a fabric, or of
+// springs.
 struct ClothDef {
-  std::filesystem::path mesh;                      // empty: a grid
+  std::filesystem::path mesh, surface;             // both empty: a grid
   Eigen::Vector2d extent = Eigen::Vector2d(1, 1);  // of the grid [m]
   Eigen::Vector2i cells = Eigen::Vector2i(40, 40);
+  std::optional<double> edge;       // wanted mean length of edges; the triangles stay as they are [m]
+  Vec3 grain = Vec3(0, 1, 0);       // direction of the warp, in the frame of the file; a triangle has it in its plane
+  std::optional<FabricDef> fabric;  // nothing: it is made of springs
   double stretch = 0, shear = 0, bend = 0;  // stiffness of a spring [N/m]
 };
 
@@ -200,7 +212,10 @@ struct BodyDef {
   FilePlace place;
 
   bool takes_colors_of_file() const { return colors == ColorSource::usual ? !color : colors == ColorSource::file; }
-  double body_density() const { return density.value_or(substance.usual_density.value_or(cloth ? 0.2 : 1000)); }
+  double body_density() const {
+    if (!cloth) return density.value_or(substance.usual_density.value_or(1000));
+    return density.value_or(cloth->fabric ? cloth->fabric->usual_density.value_or(0.2) : 0.2);
+  }
 };
 
 // Describes a rigid obstacle. Its shape is given in its own frame.

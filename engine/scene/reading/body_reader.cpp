@@ -31,7 +31,8 @@ Selection read_selection(const ConfigTable& handle) {
   Selection s;
   s.place = handle.place("select");
   const auto table = handle.table(
-      {"select", "", "which vertices, by exactly one of region, box, sphere, plane, vertices"}, "required");
+      {"select", "", "which vertices, by exactly one of region, box, sphere, plane, vertices, nearest, or by border"},
+      "required");
   if (!table) {
     if (!handle.has("select"))
       handle.complain("'select' is missing: such as select = { box = [[0, 0, 0], [1, 0.1, 1]] }");
@@ -73,7 +74,15 @@ Selection read_selection(const ConfigTable& handle) {
   s.vertices =
       table->integers(key_of(Kind::vertices, "numbers of vertices, counted from 1 in the order of the mesh"), 1);
   if (table->has(name_of(Kind::vertices).data())) pick(Kind::vertices);
-  if (given != 1) table->complain(fmt::format("a selection is one of {}", word_list(all_names<Kind>())));
+  if (table->has(name_of(Kind::nearest).data())) {
+    pick(Kind::nearest);
+    s.points = table->vectors(
+        key_of(Kind::nearest, "points, relative to the rest bounding box (0 to 1): the vertex nearest to each"), 0);
+  }
+  s.border =
+      table->boolean({"border", "", "true: only vertices on the open border of a cloth; alone: all of them"}, false);
+  if (s.border && given == 0) pick(Kind::box);  // the whole box
+  if (given != 1) table->complain(fmt::format("a selection is one of {}, or border", word_list(all_names<Kind>())));
   return s;
 }
 
@@ -121,39 +130,63 @@ std::optional<BoxDef> read_box(const ConfigTable& body) {
   return box;
 }
 
+// Reads the grid of a cloth without a file.
+void read_grid(const ConfigTable& table, ClothDef& cloth) {
+  cloth.extent = table.pair({"extent", "m", "width and height of the grid"}, Range::above(0, 1e6));
+  const Eigen::Vector2d cells =
+      table.pair({"cells", "", "of the grid, along its width and its height"}, Range::between(1, 2000));
+  if (cells != cells.array().round().matrix()) table.complain("cells", "cells: must be whole numbers");
+  const double vertices = (cells.array() + 1).prod();
+  if (vertices > most_vertices)
+    table.complain("cells", fmt::format("cells: would make {:.0f} vertices; at most {:.0f}", vertices, most_vertices));
+  cloth.cells = cells.cast<int>();
+}
+
+void read_springs(const ConfigTable& table, ClothDef& cloth) {
+  cloth.stretch = table.number({"stretch", "N/m", "makes it of springs, of this stiffness along edges"}, std::nullopt,
+                               Range::positive());
+  cloth.shear = table.number({"shear", "N/m", "of the springs of a grid's diagonals; the default is that of its edges"},
+                             cloth.mesh.empty() ? cloth.stretch : 0.0, Range::at_least(0));
+  cloth.bend = table.number({"bend", "N/m", "of the springs that skip a vertex"}, 0.0, Range::at_least(0));
+}
+
 std::optional<ClothDef> read_cloth(const ConfigTable& body) {
-  const auto table = body.table({"cloth", "", "springs along the edges of a grid, or of a mesh's triangles"});
+  const auto table = body.table({"cloth", "", "a grid, or the triangles of a file; of a material, or of springs"});
   if (!table) return std::nullopt;
   ClothDef cloth;
-  cloth.mesh = table->file({"mesh", "", "the triangles of a MEDIT .mesh; without it a grid in the plane z = 0"});
+  cloth.mesh = table->file({"mesh", "", "the triangles of a MEDIT .mesh; without a file a grid in the plane z = 0"});
+  cloth.surface = table->file(
+      {"surface", "", "any triangles (OBJ, PLY, STL, glTF, OFF), open or closed; up and units of the body apply"});
+  if (table->has("mesh") && table->has("surface"))
+    table->complain("surface", "surface: a cloth has a mesh or a surface, not both");
   if (!cloth.mesh.empty() && cloth.mesh.extension() != ".mesh" && is_model(cloth.mesh))
-    table->complain("mesh",
-                    fmt::format("mesh = '{}': cloth is made of the Triangles of a MEDIT .mesh, or of a grid (extent, "
-                                "cells), and of no other file; surface = '{}' in the body makes a solid of it",
-                                cloth.mesh.filename().string(), cloth.mesh.filename().string()));
-  if (cloth.mesh.empty()) {
-    cloth.extent = table->pair({"extent", "m", "width and height of the grid"}, Range::above(0, 1e6));
-    const Eigen::Vector2d cells =
-        table->pair({"cells", "", "of the grid, along its width and its height"}, Range::between(1, 2000));
-    if (cells != cells.array().round().matrix()) table->complain("cells", "cells: must be whole numbers");
-    const double vertices = (cells.array() + 1).prod();
-    if (vertices > most_vertices)
-      table->complain("cells",
-                      fmt::format("cells: would make {:.0f} vertices; at most {:.0f}", vertices, most_vertices));
-    cloth.cells = cells.cast<int>();
-  }
-  cloth.stretch =
-      table->number({"stretch", "N/m", "stiffness of the springs along edges"}, std::nullopt, Range::positive());
-  if (cloth.mesh.empty()) {
-    cloth.shear = table->number({"shear", "N/m", "of a grid's diagonals; the default is that of its edges"},
-                                cloth.stretch, Range::at_least(0));
-  } else {
+    table->complain("mesh", fmt::format("mesh = '{}': is not a MEDIT .mesh; surface = '{}' reads it",
+                                        cloth.mesh.filename().string(), cloth.mesh.filename().string()));
+  const bool is_grid = cloth.mesh.empty() && cloth.surface.empty();
+  if (is_grid) read_grid(*table, cloth);
+  if (!is_grid) {
     for (const char* key : {"extent", "cells", "shear"}) {
       if (table->has(key))
-        table->complain(key, fmt::format("{}: of a grid; the triangles of a mesh have their own", key));
+        table->complain(key, fmt::format("{}: of a grid; the triangles of a file have their own", key));
     }
   }
-  cloth.bend = table->number({"bend", "N/m", "of the springs that skip a vertex"}, 0.0, Range::at_least(0));
+  cloth.edge = table->number_if_given(
+      {"edge", "m", "wanted length of edges: the surface gets new triangles of this size; without it they stay"},
+      Range::above(0, 1e6));
+  if (cloth.edge && is_grid) table->complain("edge", "edge: of the triangles of a file; a grid has its cells");
+  cloth.grain = table->vector({"grain", "", "direction of the warp, in the frame of the file or grid; any length"},
+                              Vec3(0, 1, 0));
+  if (cloth.grain.norm() < 1e-9) table->complain("grain", "grain: must not be zero");
+  const bool has_springs = table->has("stretch") || (table->has("bend") && !body.has("material"));
+  if (has_springs) read_springs(*table, cloth);
+  if (has_springs && !cloth.surface.empty())
+    table->complain("stretch", "stretch: springs are of a grid or a mesh; a surface has a material");
+  if (!has_springs) {
+    for (const char* key : {"shear", "bend"}) {
+      if (table->has(key)) table->complain(key, fmt::format("{}: of springs; here the body's material has it", key));
+    }
+    cloth.fabric = read_fabric(body);
+  }
   return cloth;
 }
 
@@ -197,10 +230,13 @@ BodyContactDef read_contact(const ConfigTable& body) {
   return contact;
 }
 
-void refuse_substances(const ConfigTable& table) {
+void refuse_substances(const ConfigTable& table, const ClothDef& cloth) {
   for (const char* key : {"material", "fibre", "regions"}) {
-    if (table.has(key))
-      table.complain(key, fmt::format("{}: not of cloth, which has stretch, shear and bend in its table instead", key));
+    if (!table.has(key) || (cloth.fabric && std::string_view(key) == "material")) continue;
+    table.complain(key, cloth.fabric ? fmt::format("{}: not of cloth", key)
+                                     : fmt::format("{}: not of cloth of springs, which has stretch, shear and bend in "
+                                                   "its table instead",
+                                                   key));
   }
 }
 
@@ -277,7 +313,7 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
                                           Range::positive());
   if (body.density && body.total_mass) table.complain("total_mass", "a body has a density or a total_mass, not both");
   if (body.cloth) {
-    refuse_substances(table);
+    refuse_substances(table, *body.cloth);
   } else {
     read_substances(table, body);
   }

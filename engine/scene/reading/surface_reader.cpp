@@ -20,7 +20,8 @@ SurfaceOptions read_surface_options(const ConfigTable& table) {
   options.up = table.word<UpAxis>({"up", "", "the axis of the surface's file that points up"}, options.up);
   options.unit = table.word<LengthUnit>({"units", "", "of the surface's file"}, options.unit);
   for (const char* key : {"close", "thicken", "up", "units"}) {
-    if (table.has(key) && !table.has("surface"))
+    const bool of_cloth = std::string_view(key) == "up" || std::string_view(key) == "units";
+    if (table.has(key) && !table.has("surface") && !(of_cloth && table.has("cloth")))
       table.complain(key, fmt::format("{}: of a 'surface'; there is none here", key));
   }
   return options;

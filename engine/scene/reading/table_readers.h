@@ -17,6 +17,9 @@ StartDef read_start(const ConfigTable& body);
 // Reads `material` (and `fibre`) of a body or a region: a preset's name, or a table with the model and its parameters.
 SubstanceDef read_substance(const ConfigTable& owner);
 
+// Reads `material` of a body of cloth: a fabric's name, or a table with the model of the sheet and its parameters.
+FabricDef read_fabric(const ConfigTable& owner);
+
 // Returns the table that a preset stands for, { model = "neo-hookean", young = ..., poisson = ... }, and the other
 // values that it sets. Empty when no preset has this name.
 std::string preset_in_full(const std::string& name);
