@@ -11,11 +11,11 @@
 #endif
 uniform usampler2D visible;       // by pixel, see Visibility: samples (8 bits) and triangle of two surfaces
 uniform samplerBuffer places;     // by vertex: x y z, and the open sky
-uniform samplerBuffer normals;    // by vertex
+uniform samplerBuffer normals;    // by vertex, and of cloth how hollow it is there, from -1 to 1
 uniform usamplerBuffer triangles; // three vertices; mesh (16 bits), covering layer (4 bits), bordering layers (8 bits)
 uniform samplerBuffer paint;      // by vertex and layer: distances, eight for each vertex
 uniform samplerBuffer squares;    // by vertex: place in the printed pattern
-uniform samplerBuffer materials;  // by mesh, eighteen texels
+uniform samplerBuffer materials;  // by mesh, twenty texels
 #ifdef FIELD
 uniform samplerBuffer values;     // by vertex: the field, 0 at the low end of its range and 1 at the high one; negative: none
 uniform samplerBuffer colors;     // of the field, from low to high, in the colours of the screen
@@ -48,13 +48,18 @@ struct Seen {
   vec3 right, up;          // how the weights change to the next pixel
   vec3 world, normal;
   float open;
+#ifdef CLOTH
+  float hollow;            // from -1 on the ridges of the side that is seen to 1 in its valleys
+  bool back;               // whether the triangle's back is seen
+  vec3 slope_b, slope_c;   // how the weights of the second and the third corner grow along the triangle, by metre
+#endif
 };
 
 Seen look(uint number, vec2 at) {
   Seen seen;
   uvec4 triangle = texelFetch(triangles, int(number & 0xffffffu) - 1);
   seen.corners = ivec3(triangle.xyz);
-  seen.material = 18 * int(triangle.w & 0xffffu);
+  seen.material = 20 * int(triangle.w & 0xffffu);
   seen.covering = int(triangle.w >> 16 & 15u);
   seen.bordering = triangle.w >> 20;
   vec4 a = texelFetch(places, seen.corners.x), b = texelFetch(places, seen.corners.y), c = texelFetch(places, seen.corners.z);
@@ -75,8 +80,21 @@ Seen look(uint number, vec2 at) {
                           weights.z * texelFetch(normals, seen.corners.z).xyz);
   vec3 towards = eye - seen.world;
   if (dot(cross(side_b, side_c), towards) < 0.0 && dot(seen.normal, towards) < 0.0) seen.normal = -seen.normal;
+#ifdef CLOTH
+  vec3 face = cross(side_b, side_c);
+  float size = max(dot(face, face), 1e-30);
+  seen.back = dot(face, towards) < 0.0;
+  vec3 hollows = vec3(texelFetch(normals, seen.corners.x).w, texelFetch(normals, seen.corners.y).w, texelFetch(normals, seen.corners.z).w);
+  seen.hollow = dot(weights, hollows) * (seen.back ? -1.0 : 1.0);
+  seen.slope_b = cross(side_c, face) / size;
+  seen.slope_c = cross(face, side_b) / size;
+#endif
   return seen;
 }
+
+#ifdef CLOTH
+#include "cloth.glsl"
+#endif
 
 #ifdef COLORED
 // Returns the colour that the file of the surface gives it.
@@ -146,8 +164,11 @@ vec3 light_from(Seen seen, vec4 material, bool first) {
   // colour.
   float facing = dot(n, key_direction);
   float lit = light_reaching(seen.world, n, 1.0, first);
-  float wrapped = max((facing + 0.25) / 1.25, 0.0);
-  vec3 key = key_color * mix(vec3(max(facing, 0.0)), vec3(wrapped) * (0.55 + 0.45 * albedo), 0.5) * mix(lit, 1.0, 0.06);
+  float wrapped = max((facing + 0.25) / 1.25, 0.0), soft = 0.5;
+#ifdef CLOTH
+  if (is_cloth(seen)) soft = 0.15;  // cloth is too thin for this, and its folds would be flat
+#endif
+  vec3 key = key_color * mix(vec3(max(facing, 0.0)), vec3(wrapped) * (0.55 + 0.45 * albedo), soft) * mix(lit, 1.0, 0.06);
   vec3 fill = fill_color * max(dot(n, normalize(vec3(0.95, 0.25, 0.45))) * 0.7 + 0.3, 0.0);
   float up = 0.5 + 0.5 * n.y;
   vec3 sky = mix(0.55 * ground_color, sky_color, up);
@@ -165,6 +186,9 @@ vec3 light_from(Seen seen, vec4 material, bool first) {
   light += key_color * fresnel * lit * (power + 8.0) / 25.0 * pow(max(dot(n, h), 0.0), power) * gloss;
   // Wet surfaces also reflect the sky.
   light += sky_color * gloss * gloss * (0.04 + 0.5 * edge * away * away) * open * smoothstep(-0.2, 0.6, reflect(-v, n).y);
+#ifdef CLOTH
+  if (is_cloth(seen)) light += sheen(n, v, albedo, lit, open);
+#endif
   return light;
 }
 
@@ -203,6 +227,9 @@ vec3 shown(Seen seen, bool first) {
 #ifdef FIELD
   bool mapped = shows_field(seen);
   material = mapped ? vec4(vec3(0.55), 0.0) : material;
+#endif
+#ifdef CLOTH
+  if (is_cloth(seen)) dress(seen, material);
 #endif
   vec3 color = film(light_from(seen, material, first)).rgb;
 #ifdef FIELD

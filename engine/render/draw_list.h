@@ -54,6 +54,14 @@ struct Board {
   Vec3 downhill;     // where its surface under the body falls; as long as the sine of its angle, zero where it is level
 };
 
+// Describes what only cloth has.
+struct ClothLook {
+  std::optional<Vec3> back;  // colour of its back; a darker and paler tone of the front's where there is none [sRGB]
+  double yarn = 0;           // from one yarn to the next; 0: none are seen [m]
+  double hem = 0;            // width of the hem along open borders; 0: there is none [m]
+  bool operator==(const ClothLook&) const = default;
+};
+
 // Describes a surface whose vertices move while its other attributes stay.
 struct DrawMesh {
   std::string label;                            // caption; none when empty
@@ -66,17 +74,19 @@ struct DrawMesh {
   std::vector<SurfaceColor> surface_colors;  // by vertex, in place of `color`; empty where that is the colour
   std::vector<std::uint32_t> smooth;         // by vertex, beside those: vertices with the same number have one normal
   std::shared_ptr<const std::vector<Texture>> textures;  // of the surface's colours; null: none
-  bool two_sided = false;                                // for cloth, and for bodies that may be inside out
-  Vec3 color;                                            // sRGB colour of the uncovered surface
-  double gloss = 0.25;                                   // gloss of the uncovered surface
-  std::vector<PaintColor> layers;                        // at most 8
-  Bounds rest;                      // bounds at the start: captions stand below them, cameras frame them [m]
-  bool mapped = false;              // whether it shows the field; its own colours are then not seen
-  bool wires = false;               // whether the edges of its triangles are drawn
-  bool ghost = false;               // whether it is half transparent, and casts no shadow
-  bool kept_clear = false;          // whether captions stay away from it
-  std::optional<Board> board = {};  // of a body; nothing where the collider bears others, too
-  bool framed = true;               // whether lights, shadows and cameras cover it; false for planes without end
+  std::vector<std::array<float, 3>> flat;  // by vertex, of cloth: place on the flat cloth, and from its open border [m]
+  std::optional<ClothLook> cloth;          // nothing: it is no cloth
+  bool two_sided = false;                  // for cloth, and for bodies that may be inside out
+  Vec3 color;                              // sRGB colour of the uncovered surface
+  double gloss = 0.25;                     // gloss of the uncovered surface
+  std::vector<PaintColor> layers;          // at most 8
+  Bounds rest;                             // bounds at the start: captions stand below them, cameras frame them [m]
+  bool mapped = false;                     // whether it shows the field; its own colours are then not seen
+  bool wires = false;                      // whether the edges of its triangles are drawn
+  bool ghost = false;                      // whether it is half transparent, and casts no shadow
+  bool kept_clear = false;                 // whether captions stay away from it
+  std::optional<Board> board = {};         // of a body; nothing where the collider bears others, too
+  bool framed = true;                      // whether lights, shadows and cameras cover it; false for planes without end
 };
 
 // Chooses what is seen behind the bodies.
@@ -128,6 +138,8 @@ struct DrawList {
   std::vector<std::vector<float>> positions;  // by mesh: x y z by vertex [m]
   std::vector<std::vector<float>>
       field;  // by mesh: by vertex, from 0 (low) to 1 (high) or no_field; empty if not mapped
+  std::vector<std::vector<float>>
+      hollow;  // by mesh: by vertex, from -1 (ridge of a fold) to 1 (valley), of the front; empty: no cloth
   std::vector<std::pair<std::size_t, DrawMesh>> renewed;      // meshes that replace the stage's from now on
   std::vector<std::pair<std::size_t, std::string>> captions;  // captions of meshes from now on
   std::vector<std::string> notes;                             // by mesh: what stands below its caption in this frame

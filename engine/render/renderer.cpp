@@ -116,6 +116,8 @@ void Renderer::make_shading_program() {
     definitions.emplace_back("PAINTED");
   if (std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.square.empty(); }))
     definitions.emplace_back("PRINTED");
+  if (std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return mesh.cloth.has_value(); }))
+    definitions.emplace_back("CLOTH");
   if (stage_.field) definitions.emplace_back("FIELD");
   const bool colored =
       std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.surface_colors.empty(); });

@@ -12,8 +12,20 @@ namespace {
 
 // A mesh's material takes this many texels of four floats: linear colours with gloss, of which the first is the
 // uncovered surface and eight are its layers; the widths of the layers' borders, one in each of eight texels; the kind
-// of print, whether it shows the field, whether its edges are drawn, and whether it has the colours of its file.
-constexpr std::size_t material_texels = 18;
+// of print, whether it shows the field, whether its edges are drawn, and whether it has the colours of its file; the
+// colour of a cloth's back with 0 for no cloth, 1 for this colour and 2 for a tone of the front's; the distance of its
+// yarns and the width of its hem.
+constexpr std::size_t material_texels = 20;
+
+void append_cloth(const DrawMesh& mesh, float* out) {
+  // A surface that shows a field has neither sides nor yarns, as it has no print.
+  if (!mesh.cloth || mesh.mapped) return;
+  const Vec3 back = linear_of(mesh.cloth->back.value_or(Vec3::Zero()));
+  for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(back[k]);
+  out[3] = mesh.cloth->back ? 1.0f : 2.0f;
+  out[4] = static_cast<float>(mesh.cloth->yarn);
+  out[5] = static_cast<float>(mesh.cloth->hem);
+}
 
 void append_material(const DrawMesh& mesh, std::vector<float>& out) {
   const std::size_t begin = out.size();
@@ -34,6 +46,7 @@ void append_material(const DrawMesh& mesh, std::vector<float>& out) {
   out[begin + 4 * 17 + 1] = mesh.mapped ? 1.0f : 0.0f;
   out[begin + 4 * 17 + 2] = mesh.wires ? 1.0f : 0.0f;
   out[begin + 4 * 17 + 3] = mesh.surface_colors.empty() ? 0.0f : 1.0f;
+  append_cloth(mesh, &out[begin + 4 * 18]);
 }
 
 // Packs what the shader must know of a triangle's colours: its mesh (16 bits), the topmost layer that covers all of it
@@ -59,6 +72,11 @@ std::uint32_t packed_look(const DrawMesh& mesh, std::size_t index, const std::ui
   return static_cast<std::uint32_t>(index) | covering << 16 | bordering << 20;
 }
 
+// Writes how hollow a surface is at its vertices into the fourth numbers of their normals.
+void add_hollows(const std::vector<float>& hollow, float* normals) {
+  for (std::size_t v = 0; v < hollow.size(); ++v) normals[4 * v + 3] = hollow[v];
+}
+
 }  // namespace
 
 SurfaceBuffers::SurfaceBuffers(const GlTable& gl, const std::vector<DrawMesh>& meshes, const TextureBuffer& textures)
@@ -68,8 +86,8 @@ SurfaceBuffers::SurfaceBuffers(const GlTable& gl, const std::vector<DrawMesh>& m
 }
 
 SurfaceBuffers::~SurfaceBuffers() {
-  for (const Lookup* lookup :
-       {&places_, &normals_, &triangles_, &paint_, &squares_, &materials_, &values_, &tints_, &texture_places_}) {
+  for (const Lookup* lookup : {&places_, &normals_, &triangles_, &paint_, &squares_, &materials_, &values_, &tints_,
+                               &texture_places_, &flats_}) {
     gl_.DeleteTextures(1, &lookup->texture);
     gl_.DeleteBuffers(1, &lookup->buffer);
   }
@@ -90,10 +108,11 @@ void SurfaceBuffers::make_lookup(Lookup& lookup, GLenum format, std::size_t byte
 
 void SurfaceBuffers::make_static(const std::vector<DrawMesh>& meshes) {
   std::vector<std::uint32_t> triangles, indices;
-  std::vector<float> paint, squares, materials;
+  std::vector<float> paint, squares, flats, materials;
   unsigned vertices = 0;
   const bool printed = std::ranges::any_of(meshes, [](const DrawMesh& mesh) { return !mesh.square.empty(); });
   const bool painted = std::ranges::any_of(meshes, [](const DrawMesh& mesh) { return !mesh.layers.empty(); });
+  const bool woven = std::ranges::any_of(meshes, [](const DrawMesh& mesh) { return mesh.cloth.has_value(); });
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     const DrawMesh& mesh = meshes[m];
     const auto first_caster = static_cast<unsigned>(indices.size() / 3);
@@ -107,6 +126,10 @@ void SurfaceBuffers::make_static(const std::vector<DrawMesh>& meshes) {
     for (std::size_t v = 0; v < mesh.occlusion.size(); ++v) {
       place_data_.insert(place_data_.end(), {0, 0, 0, mesh.occlusion[v]});
       if (painted) paint.insert(paint.end(), mesh.paint[v].begin(), mesh.paint[v].end());
+      if (woven) {
+        const std::array<float, 3> flat = mesh.flat.empty() ? std::array<float, 3>{} : mesh.flat[v];
+        flats.insert(flats.end(), {flat[0], flat[1], flat[2], 0});
+      }
       if (!printed) continue;
       const std::array<float, 2> square = mesh.square.empty() ? std::array<float, 2>{} : mesh.square[v];
       squares.insert(squares.end(), square.begin(), square.end());
@@ -121,6 +144,7 @@ void SurfaceBuffers::make_static(const std::vector<DrawMesh>& meshes) {
   make_lookup(triangles_, GL_RGBA32UI, triangles.size() * sizeof(std::uint32_t), triangles.data(), GL_STATIC_DRAW);
   make_lookup(paint_, GL_R32F, paint.size() * sizeof(float), paint.data(), GL_STATIC_DRAW);
   make_lookup(squares_, GL_RG32F, squares.size() * sizeof(float), squares.data(), GL_STATIC_DRAW);
+  make_lookup(flats_, GL_RGBA32F, flats.size() * sizeof(float), flats.data(), GL_STATIC_DRAW);
   if (std::ranges::any_of(meshes, &DrawMesh::mapped)) value_data_.assign(vertices, no_field);
   make_lookup(values_, GL_R32F, value_data_.size() * sizeof(float), value_data_.data(), GL_STREAM_DRAW);
   make_lookup(materials_, GL_RGBA32F, materials.size() * sizeof(float), materials.data(), GL_STATIC_DRAW);
@@ -161,8 +185,9 @@ void SurfaceBuffers::upload(const std::vector<DrawMesh>& meshes, const DrawList&
     SUPPLE_CHECK(positions[m].size(), ==, 3 * meshes[m].occlusion.size());
     float* place = place_data_.data() + 4 * std::size_t(ranges_[m].first_vertex);
     for (std::size_t i = 0; i < positions[m].size(); i += 3, place += 4) std::copy_n(&positions[m][i], 3, place);
-    compute_normals(positions[m], meshes[m].triangles, meshes[m].smooth,
-                    normal_data_.data() + 4 * std::size_t(ranges_[m].first_vertex));
+    float* normals = normal_data_.data() + 4 * std::size_t(ranges_[m].first_vertex);
+    compute_normals(positions[m], meshes[m].triangles, meshes[m].smooth, normals);
+    if (m < list.hollow.size()) add_hollows(list.hollow[m], normals);
   }
   put(places_, place_data_);
   put(normals_, normal_data_);
@@ -197,6 +222,7 @@ int SurfaceBuffers::bind(const Program& program, int unit) const {
                                      {"triangles", &triangles_},
                                      {"paint", &paint_},
                                      {"squares", &squares_},
+                                     {"flats", &flats_},
                                      {"materials", &materials_},
                                      {"values", &values_},
                                      {"tints", &tints_},

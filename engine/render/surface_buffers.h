@@ -25,9 +25,8 @@ class SurfaceBuffers {
   // Draws the triangles that cast one mesh's shadow, which may be fewer than it has.
   void draw_caster(std::size_t mesh) const;
 
-  // Makes a program's samplers places, normals, triangles, paint, squares, materials, values, tints and texture_places
-  // read these buffers.
-  // Returns the first unit that is still free.
+  // Makes a program's samplers places, normals, triangles, paint, squares, flats, materials, values, tints and
+  // texture_places read these buffers. Returns the first unit that is still free.
   int bind(const Program& program, int first_unit) const;
 
  private:
@@ -49,10 +48,11 @@ class SurfaceBuffers {
   std::vector<Range> ranges_;  // by mesh
   GLuint array_ = 0, indices_ = 0;
   Lookup places_;          // by vertex: x y z, and the open sky
-  Lookup normals_;         // by vertex
+  Lookup normals_;         // by vertex, and of cloth how hollow it is there
   Lookup triangles_;       // three vertices, and packed_look
   Lookup paint_;           // by vertex and layer: distances, eight for each vertex
   Lookup squares_;         // by vertex: place in the printed pattern
+  Lookup flats_;           // by vertex: place on the flat cloth; empty when no mesh is cloth
   Lookup materials_;       // by mesh, see material_texels
   Lookup tints_;           // by vertex: the file's linear colour, and the number of its texture from one or zero
   Lookup texture_places_;  // by vertex; both empty when no mesh has colours of its file

@@ -160,6 +160,11 @@ void draw_one_side(Stage& stage) {
   for (DrawMesh& mesh : stage.meshes) mesh.two_sided = false;
 }
 
+void remove_hem(Stage& stage) {
+  for (DrawMesh& mesh : stage.meshes)
+    if (mesh.cloth) mesh.cloth->hem = 0;
+}
+
 void remove_paint(Stage& stage) {
   for (DrawMesh& mesh : stage.meshes) mesh.layers.clear();
 }
@@ -197,7 +202,10 @@ TEST(Golden, EglGivesThePictureOfOsmesa) {
 
 TEST(Golden, ClothShowsBothItsSides) {
   expect_golden("cloth", {written_for_tests("cloth")},
-                {{.on_stage = draw_one_side}, {{"body.front.pattern=none", "body.back.pattern=none"}}});
+                {{.on_stage = draw_one_side},
+                 {{"body.front.pattern=none", "body.back.pattern=none"}},
+                 {.settings = {"body.back.back_color=[0.62, 0.76, 0.90]"}},
+                 {.on_stage = remove_hem, .small = true}});
 }
 
 TEST(Golden, CollidersStandAroundABody) {

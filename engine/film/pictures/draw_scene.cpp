@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "base/floats.h"
+#include "film/pictures/drawn_cloth.h"
 #include "film/pictures/picture_words.h"
 #include "geometry/skins/simplify.h"
 #include "geometry/skins/skin_stretch.h"
@@ -31,6 +32,7 @@ DrawMesh mesh_of(const Skin& skin, const std::vector<PaintLayer>& layers) {
   mesh.occlusion = skin.occlusion;
   mesh.paint = skin.paint;
   mesh.square = skin.square;
+  mesh.flat = skin.flat;
   mesh.surface_colors = skin.color;
   mesh.smooth.assign(skin.smooth.begin(), skin.smooth.end());
   for (const PaintLayer& layer : layers) mesh.layers.push_back({layer.color, layer.gloss, layer.soft});
@@ -159,7 +161,8 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
     mesh.two_sided = drawn[b].two_sided;
     mesh.color = drawn[b].color;
     mesh.textures = drawn[b].textures;
-    mesh.gloss = bodies[b].def.gloss.value_or(mesh.gloss);
+    mesh.cloth = cloth_look(bodies[b].def, bodies[b].description.mesh.rest);
+    mesh.gloss = gloss_of(bodies[b].def);
     mesh.wires = scene.look.wireframe;
     mesh.rest = bounds_of(bodies[b].description.mesh.rest);
     stage.meshes.push_back(std::move(mesh));
@@ -192,11 +195,11 @@ void fit_to_pixels(DrawnBody& drawn, const TetMesh& mesh, double pixel) {
 void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodies, const std::vector<Camera>& cameras,
                     int height) {
   for (std::size_t b = 0; b < drawn.size(); ++b) {
-    if (!drawn[b].vertex_of.empty()) continue;
+    if (!drawn[b].vertex_of.empty() && !drawn[b].subdivides) continue;
     const TetMesh& mesh = bodies[b].description.mesh;
     double pixel = 1e300;
     for (const Camera& camera : cameras) pixel = std::min(pixel, pixel_on(bounds_of(mesh.rest), camera, height));
-    fit_to_pixels(drawn[b], mesh, pixel);
+    drawn[b].subdivides ? smooth_for_pixels(drawn[b], mesh.rest, pixel) : fit_to_pixels(drawn[b], mesh, pixel);
   }
   limit_stretch(drawn);
 }
@@ -209,14 +212,19 @@ void limit_stretch(std::vector<DrawnBody>& drawn) {
 Positions skin_places(const DrawnBody& drawn, const TetMesh& mesh, const Positions& now, Threads* threads) {
   const bool carried = drawn.vertex_of.empty();
   const Embedding& embedding = drawn.embedding;
-  const Eigen::Index count = carried ? embedding.points() : Eigen::Index(drawn.vertex_of.size());
+  const bool subdivided = drawn.weights.rows() > 0;
+  const Eigen::Index count = carried      ? embedding.points()
+                             : subdivided ? drawn.weights.rows()
+                                          : Eigen::Index(drawn.vertex_of.size());
   Positions result(count, 3);
   const std::vector<Mat3> frames = carried ? frames_at(embedding.frames, now, threads) : std::vector<Mat3>();
   constexpr Eigen::Index chunk = 4096;
   run_chunks(threads, static_cast<int>((count + chunk - 1) / chunk), 12 * count, [&](int number) {
     const Eigen::Index end = std::min(count, (number + 1) * chunk);
     for (Eigen::Index v = number * chunk; v < end; ++v)
-      result.row(v) = carried ? embedded_point(embedding, v, now, frames) : Vec3(now.row(drawn.vertex_of[v]));
+      result.row(v) = carried      ? embedded_point(embedding, v, now, frames)
+                      : subdivided ? smooth_place(drawn.weights, v, now)
+                                   : Vec3(now.row(drawn.vertex_of[v]));
   });
   const double stretch = drawn.limit ? drawn.limit->largest_stretch(result) : 0;
   if (stretch > most_skin_stretch) {

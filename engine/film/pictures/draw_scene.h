@@ -29,7 +29,7 @@ void add_colliders(const std::vector<SceneCollider>& colliders, const std::vecto
                    DrawList& list);
 
 // Removes the triangles of skins that no camera could show in a picture of this height [pixels], and calls
-// limit_stretch(). Skins that are a mesh's own surface are left as they are.
+// limit_stretch(). Surfaces of cloth become smooth (drawn_cloth.h); other surfaces of meshes are left as they are.
 void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodies, const std::vector<Camera>& cameras,
                     int height);
 

@@ -5,6 +5,7 @@
 
 #include "base/frame_time.h"
 #include "film/pictures/camera.h"
+#include "film/pictures/drawn_cloth.h"
 #include "film/pictures/film_graphs.h"
 #include "film/pictures/marked_vertices.h"
 #include "film/pictures/picture_words.h"
@@ -85,6 +86,7 @@ void DrawnFilm::add_ghosts(const SceneDef& scene, const std::vector<Body>& bodie
     ghost.label.clear();
     ghost.layers.clear();
     ghost.square.clear();
+    ghost.cloth.reset();
     ghost.surface_colors.clear();
     ghost.color = Vec3(0.604, 0.604, 0.604);  // the grey of references in all plots
     ghost.gloss = 0;
@@ -134,12 +136,16 @@ void DrawnFilm::follow_colors(const SceneDef& scene, DrawList& list) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     DrawMesh& mesh = stage_.meshes[b];
     const Vec3 color = scene.bodies[b].color.value_or(drawn_[b].color);
-    const double gloss = scene.bodies[b].gloss.value_or(DrawMesh{}.gloss);
+    const double gloss = gloss_of(scene.bodies[b]);
+    const std::optional<ClothLook> cloth = cloth_look(scene.bodies[b], bodies_[b].description.mesh.rest);
     const bool takes_own = !scene.bodies[b].takes_colors_of_file();  // true once a change has set the body's color
-    if (mesh.color == color && mesh.gloss == gloss && !(takes_own && !mesh.surface_colors.empty())) continue;
+    if (mesh.color == color && mesh.gloss == gloss && mesh.cloth == cloth &&
+        !(takes_own && !mesh.surface_colors.empty()))
+      continue;
     if (takes_own) mesh.surface_colors.clear();
     mesh.color = color;
     mesh.gloss = gloss;
+    mesh.cloth = cloth;
     list.renewed.emplace_back(b, mesh);
   }
 }
@@ -149,6 +155,8 @@ DrawList DrawnFilm::list(const SceneDef& scene, const FramePose& pose, const Col
   const std::size_t bodies = pose.motion.size();
   for (std::size_t b = 0; b < bodies; ++b)
     result.positions.push_back(skin_positions(drawn_[b], bodies_[b].description.mesh, *pose.motion[b], &threads));
+  for (std::size_t b = 0; b < bodies; ++b)
+    result.hollow.push_back(cloth_hollows(drawn_[b], bodies_[b], *pose.motion[b]));
   if (field_) {
     const std::vector<std::vector<double>> values = field_->values(pose, set, &threads);
     for (std::size_t b = 0; b < bodies; ++b)

@@ -226,12 +226,17 @@ void SurfaceField::settle() {
 
 std::vector<float> SurfaceField::on_skin(const DrawnBody& drawn, const std::vector<double>& values) const {
   const bool carried = drawn.vertex_of.empty();
-  const std::size_t count = carried ? static_cast<std::size_t>(drawn.embedding.corners.rows()) : drawn.vertex_of.size();
+  const bool subdivided = drawn.weights.rows() > 0;
+  const std::size_t count = carried      ? static_cast<std::size_t>(drawn.embedding.corners.rows())
+                            : subdivided ? static_cast<std::size_t>(drawn.weights.rows())
+                                         : drawn.vertex_of.size();
   std::vector<float> result(count, no_field);
   for (std::size_t v = 0; v < count; ++v) {
     double value = 0;
     if (carried) {
       value = embedded_value(drawn.embedding, static_cast<Eigen::Index>(v), values);
+    } else if (subdivided) {
+      value = weighted_value(drawn.weights, static_cast<Eigen::Index>(v), values);
     } else {
       value = values[drawn.vertex_of[v]];
     }

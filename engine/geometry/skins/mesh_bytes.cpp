@@ -83,6 +83,7 @@ std::string bytes_of(const CarriedSkin& carried) {
   add_list(bytes, carried.skin.occlusion);
   add_list(bytes, carried.skin.paint);
   add_list(bytes, carried.skin.square);
+  add_list(bytes, carried.skin.flat);
   add_list(bytes, carried.skin.color);
   add_list(bytes, carried.skin.smooth);
   const Embedding& embedding = carried.embedding;
@@ -105,11 +106,11 @@ std::optional<CarriedSkin> carried_skin_from(std::string_view bytes) {
   Embedding& embedding = carried.embedding;
   VertexFrames& frames = embedding.frames;
   const bool read = reader.rows(skin.rest.points) && reader.rows(skin.rest.triangles) && reader.list(skin.occlusion) &&
-                    reader.list(skin.paint) && reader.list(skin.square) && reader.list(skin.color) &&
-                    reader.list(skin.smooth) && reader.rows(embedding.corners) && reader.rows(embedding.weights) &&
-                    reader.list(embedding.begin) && reader.list(embedding.shares) && reader.rows(embedding.offset) &&
-                    reader.list(frames.vertex) && reader.list(frames.begin) && reader.list(frames.corner) &&
-                    reader.rows(frames.gradient);
+                    reader.list(skin.paint) && reader.list(skin.square) && reader.list(skin.flat) &&
+                    reader.list(skin.color) && reader.list(skin.smooth) && reader.rows(embedding.corners) &&
+                    reader.rows(embedding.weights) && reader.list(embedding.begin) && reader.list(embedding.shares) &&
+                    reader.rows(embedding.offset) && reader.list(frames.vertex) && reader.list(frames.begin) &&
+                    reader.list(frames.corner) && reader.rows(frames.gradient);
   return read && reader.at_end() ? std::optional(std::move(carried)) : std::nullopt;
 }
 

@@ -21,11 +21,16 @@ struct Names<Pattern> {
                                        Name{Pattern::checks, "checks"}};
 };
 
+// Describes where a vertex lies on the flat cloth: along its two axes, and from its open border [m].
+using FlatPlace = std::array<float, 3>;
+constexpr double no_border = 1e3;  // the distance of what has no border [m]
+
 struct Skin {
   TriMesh rest;                  // in the body's rest frame
   std::vector<float> occlusion;  // share of the sky that the rest shape leaves open at each vertex, 0 to 1
   std::vector<std::array<float, max_paint_layers>> paint;  // signed distance to each colour layer, by vertex [m]
   std::vector<std::array<float, 2>> square;  // place in the printed pattern by vertex, in squares; empty without one
+  std::vector<FlatPlace> flat;               // of cloth, by vertex; empty: it is no cloth
   std::vector<SurfaceColor> color;           // of the file, by vertex; empty where it has none
   // Numbers by vertex, if there are colours: vertices with the same one were one before colours split it, and have one
   // normal.

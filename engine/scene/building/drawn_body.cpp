@@ -7,6 +7,7 @@
 #include <map>
 
 #include "geometry/files/source_file.h"
+#include "geometry/skins/flat_places.h"
 #include "geometry/skins/mesh_bytes.h"
 #include "geometry/skins/skin_stretch.h"
 #include "geometry/triangles/refine_surface.h"
@@ -68,7 +69,10 @@ DrawnBody drawn_mesh(const Body& body) {
   const TetMesh& placed = body.description.mesh;
   const Triangles surface = surface_of(body);
   // The skin is made in the body's own directions, so that the print lies along its edges however the body stands.
-  drawn.skin = skin_of_surface(placed.rest * turn_of(body), surface, square_of(body), drawn.vertex_of);
+  const double printed = square_of(body), square = body.def.cloth && printed == 0 ? 1 : printed;
+  drawn.skin = skin_of_surface(placed.rest * turn_of(body), surface, square, drawn.vertex_of);
+  if (body.def.cloth) drawn.skin.flat = flat_places(drawn.skin, drawn.vertex_of, square);
+  if (printed == 0) drawn.skin.square.clear();
   for (std::size_t v = 0; v < drawn.vertex_of.size(); ++v)
     drawn.skin.rest.points.row(v) = placed.rest.row(drawn.vertex_of[v]);
   drawn.color = body.def.color.value_or(body.def.shape.empty() ? Shape{}.color : body.shape.color);
@@ -102,6 +106,7 @@ std::vector<DrawnBody> drawn_bodies(const std::vector<Body>& bodies, const SlowW
       drawn.layers = body.shape.paint;
       if (body.colors) drawn.textures = body.colors->textures;
     }
+    drawn.subdivides = surface == DrawnAs::skin && body.def.cloth && !drawn.vertex_of.empty();
     drawn.two_sided = body.def.cloth || !std::holds_alternative<AtRest>(body.def.start);
     result.push_back(std::move(drawn));
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "geometry/skins/embedding.h"
+#include "geometry/skins/surface_weights.h"
 #include "geometry/skins/skin.h"
 #include "geometry/skins/skin_limit.h"
 #include "geometry/skins/surface_colors.h"
@@ -15,7 +16,9 @@ struct DrawnBody {
   Triangles casters;                    // the skin's triangles that cast its shadow; empty: all of them
   Embedding embedding;                  // how elements carry a skin that is not the boundary
   std::optional<SkinLimit> limit;       // limit of the skin's stretch, once limit_stretch() has been called
-  std::vector<std::int32_t> vertex_of;  // for the mesh's boundary: mesh vertex by skin vertex
+  std::vector<std::int32_t> vertex_of;  // for the mesh's boundary: mesh vertex by skin vertex, before it is subdivided
+  bool subdivides = false;              // whether cameras subdivide the mesh's boundary, as for cloth
+  SurfaceWeights weights;               // of the mesh's vertices on those of a boundary that is subdivided
   bool two_sided = false;
   Vec3 color;
   std::vector<PaintLayer> layers;  // colours only; their areas live in the skin

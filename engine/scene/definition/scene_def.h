@@ -206,6 +206,8 @@ struct BodyDef {
   Pattern pattern = Pattern::none;
   std::optional<double> pattern_size;  // edge of the pattern's squares [m]
   std::optional<Vec3> color;           // replaces the shape's own colours [sRGB]
+  std::optional<Vec3> back_color;      // of the back of cloth [sRGB]
+  std::optional<double> yarn;          // between two yarns of cloth; 0: none are drawn [m]
   ColorSource colors = ColorSource::usual;
   std::optional<double> gloss;  // of the uncovered surface
   double skin_cells = 0;        // cells of the drawn skin along the longest side

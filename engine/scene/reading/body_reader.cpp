@@ -206,6 +206,18 @@ Pattern read_pattern(const ConfigTable& table, const BodyDef& body) {
   return pattern;
 }
 
+// Reads how cloth looks.
+void read_cloth_look(const ConfigTable& table, BodyDef& body) {
+  body.back_color = table.color_if_given(
+      {"back_color", "sRGB", "of the back of cloth; a darker and paler tone of the front's where there is none"});
+  body.yarn = table.number_if_given(
+      {"yarn", "m", "from one yarn of cloth to the next; a 700th of its diagonal; 0: none are seen"},
+      Range::at_least(0));
+  for (const char* key : {"back_color", "yarn"}) {
+    if (table.has(key) && !body.cloth) table.complain(key, fmt::format("{}: of cloth; this body is none", key));
+  }
+}
+
 // Reads what the body does with others. Whether the names are those of bodies is known once all have been read
 // (meeting_check.h).
 BodyContactDef read_contact(const ConfigTable& body) {
@@ -339,6 +351,7 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
       {"pattern_size", "m", "edge of its squares; a sixth of the middle side, of cloth a twentieth of the longest"},
       Range::positive());
   body.color = table.color_if_given({"color", "sRGB", "over the shape's own"});
+  read_cloth_look(table, body);
   body.colors = table.word<ColorSource>({"colors", "",
                                          "whose colour is drawn: usual: those of the surface's file, unless there is a "
                                          "color here; file: the file's where "
@@ -346,8 +359,8 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
                                         body.colors);
   if (table.has("colors") && !table.has("surface"))
     table.complain("colors", "colors: of a 'surface'; there is none here");
-  body.gloss =
-      table.number_if_given({"gloss", "", "of the uncovered surface: 0 matt to 1 wet [0.25]"}, Range::between(0, 1));
+  body.gloss = table.number_if_given({"gloss", "", "of the uncovered surface: 0 matt to 1 wet [0.25; cloth 0.08]"},
+                                     Range::between(0, 1));
   body.skin_cells = table.number({"skin_cells", "", "cells of the drawn skin along the longest side of a shape"}, 72,
                                  Range::between(8, 400));
   return body;

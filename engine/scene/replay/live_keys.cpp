@@ -63,6 +63,7 @@ constexpr auto patterns = std::to_array<LivePattern>({
     {"look.background", nothing},
     {"look.exposure", nothing},
     {"body[].color", nothing},
+    {"body[].back_color", nothing},
     {"body[].gloss", nothing},
     {"collider[].color", new_surface},
 });

@@ -1,0 +1,25 @@
+// Subdivides the drawn surface of a cloth so that it looks smooth: Loop's scheme (1987) with the rules of Hoppe et al.
+// (1994) for creases, corners and open borders. How many levels a picture needs is decided in film/pictures/.
+//
+// Loop's surface lies inside of the curves of its control points, so that a cloth would sink into a ball and its
+// smallest wrinkles would lose a third of their height. So the control points are first moved outwards by as much as
+// the limit surface lies inside: one step of the quasi-interpolation of Litke, Levin and Schroeder (2001, "Fitting
+// subdivision surfaces", section 4). What is left is of fourth order in the length of an edge.
+#pragma once
+
+#include "geometry/skins/skin.h"
+#include "geometry/skins/surface_weights.h"
+
+namespace supple {
+
+// Cuts each triangle of a skin into four, `levels` times. The skin's vertices keep their numbers, and new ones follow.
+//
+// An edge is sharp where it has another number of triangles than two, or where the skin's vertices are split along it
+// (Skin::smooth tells which vertices only colours split). Along sharp edges the surface follows a curve that depends on
+// the vertices of that curve alone, so that a seam between two surfaces stays closed. A vertex stays where it is at
+// which other than two sharp edges meet, or two at an angle. Colours, patterns and paint change evenly along edges.
+//
+// vertex_of: mesh vertex by skin vertex. mesh: places of the mesh's vertices at rest, n x 3 [m].
+SurfaceWeights subdivide(Skin& skin, const std::vector<std::int32_t>& vertex_of, const Positions& mesh, int levels);
+
+}  // namespace supple
