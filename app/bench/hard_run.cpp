@@ -199,7 +199,7 @@ StabilityOutcome HardRun::play(std::vector<Positions>* motion, WorstStep* worst)
   OpenWorkspace& workspace = body().workspace();
   workspace.prepare(model(), body().inputs().solver);
   EnergyBudget budget;
-  budget.start(model(), scene_.gravity, body().state(), workspace);
+  budget.start(model(), body().inputs(), body().state(), workspace);
   const Tetrahedra& tets = body().body().description.mesh.tets;
   const double volume = volume_of(body().body().description.mesh.rest, tets);
   outcome.start = in_input_order(model(), body().state().x);

@@ -1,5 +1,6 @@
-// Computes what a vertex alone adds to g: its inertia, the spring of a soft handle and its row of the damping. Methods
-// that treat elements one by one add the elements' forces themselves. The whole of g is in sim/solver/objective.h.
+// Computes what a vertex alone adds to g: its inertia, the spring of a soft handle, its row of the damping, and air.
+// Methods that treat elements one by one add the elements' forces themselves. The whole of g is in
+// sim/solver/objective.h.
 #pragma once
 
 #include "sim/model/bending.h"
@@ -39,6 +40,11 @@ inline VertexTerms vertex_terms(const Model& model, const OpenWorkspace& w, cons
       terms.slope += model.damping.value[k] * (x.row(other) - w.start_copy.row(other)).transpose();
       if (other == v) terms.stiffness += model.damping.value[k];
     }
+  }
+  if (w.air.act()) {
+    const AirForces::VertexShare air = w.air.share_of(model, x, v);
+    terms.slope += air.slope;
+    terms.stiffness += air.stiffness;
   }
   return terms;
 }

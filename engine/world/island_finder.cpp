@@ -23,9 +23,11 @@ std::vector<std::vector<std::size_t>> lists_of(DisjointSets& sets) {
 }
 
 // Returns where a body's vertices would go if nothing touched them, with hard handles at their targets (n x 3) [m].
-Positions free_motion(const Model& model, const StepInputs& inputs, const State& state) {
+Positions free_motion(const Model& model, const StepInputs& inputs, const State& state, AirForces& air) {
   Positions y;
   inertial_prediction(model, inputs, state, y);
+  begin_air(model, inputs, state, air);
+  if (air.have_drag()) air.add_free_way(model, y);
   for (std::size_t i = 0; i < model.handled.size(); ++i) {
     if (model.handled[i].vertex >= model.free) y.row(model.handled[i].vertex) = inputs.targets.row(i);
   }
@@ -38,6 +40,7 @@ struct IslandFinder::Way {
   Positions y;               // n x 3 [m]
   Bounds swept;              // of the body from q to y
   Vec3 mean = Vec3::Zero();  // its mean motion [m]
+  AirForces air;
   std::uint64_t structure = 0;
   double layer = 0;  // of a sheet, or between a surface and what is drawn: contact holds others there [m]
   mutable std::unique_ptr<MovingSurface> surface;
@@ -53,7 +56,7 @@ void IslandFinder::find_ways() {
     const MovingBody& body = *bodies_[b];
     Way& way = ways_[b];
     const Positions& q = body.state().x;
-    way.y = free_motion(body.model(), body.inputs(), body.state());
+    way.y = free_motion(body.model(), body.inputs(), body.state(), way.air);
     way.mean = (way.y - q).colwise().mean().transpose();
     way.swept = bounds_of(q);
     const Bounds end = bounds_of(way.y);

@@ -89,12 +89,19 @@ StepInputs Islands::inputs_of(const std::vector<std::size_t>& island, const Selv
   inputs.targets.resize(std::ssize(joined.handled), 3);
   inputs.middle_targets.resize(joined.scheme.theta < 1 ? std::ssize(joined.handled) : 0, 3);
   Eigen::Index row = 0;
+  bool any_air = false;
   for (const std::size_t b : island) {
     const StepInputs& own = bodies_[b]->inputs();
     inputs.targets.middleRows(row, own.targets.rows()) = own.targets;
     if (joined.scheme.theta < 1) inputs.middle_targets.middleRows(row, own.targets.rows()) = own.middle_targets;
     row += own.targets.rows();
+    any_air |= !own.air.empty();
     inputs.solver.iterations = std::max(inputs.solver.iterations, own.solver.iterations);
+  }
+  inputs.air.clear();
+  for (std::size_t p = 0; any_air && p < island.size(); ++p) {
+    const std::vector<PartAir>& own = bodies_[island[p]]->inputs().air;
+    inputs.air.push_back(own.empty() ? PartAir{} : own.front());
   }
   for (std::size_t s = 0; s < island.size(); ++s) {
     for (std::size_t p = 0; p < island.size(); ++p) {

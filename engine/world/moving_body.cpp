@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/trace.h"
+#include "scene/definition/air_of_body.h"
 #include "sim/measures/measures.h"
 #include "sim/solver/step.h"
 
@@ -27,6 +28,9 @@ MovingBody::MovingBody(MovingBody&&) noexcept = default;
 
 void MovingBody::apply(const ChangeCost& cost) {
   inputs_.gravity = scene_.gravity;
+  inputs_.wind = scene_.wind.value_or(Wind{});
+  inputs_.air.clear();
+  if (const std::optional<PartAir> air = air_of(scene_, body_.def)) inputs_.air.push_back(*air);
   inputs_.solver = solvers_.settings(body_.def.solver.method, body_.def.solver.settings);
   if (cost.factor) renew_model();
   if (cost.rule || cost.factor) rule_ = solvers_.rule(body_.def.solver.method, model_);

@@ -153,7 +153,7 @@ void World::change(TimedChange change) {
   const TimedChange added = script.edits().changes.back();
   try {
     SceneDef scene = begins ? script.scene() : script.scene_at(parts.frame + 1);
-    for (std::size_t b = 0; b < size() && added.cost.factor; ++b) {
+    for (std::size_t b = 0; b < size() && (added.cost.factor || added.cost.trial); ++b) {
       if (!added.object.empty() && added.object != parts.bodies[b].def.table) continue;
       Body trial = parts.bodies[b];
       update_body(trial, scene, scene.bodies[b]);

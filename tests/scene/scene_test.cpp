@@ -240,6 +240,8 @@ box = {{}}
 material = {0}
 fibre = {{ kappa = 1 }}
 start = {{ stretch = [1, 1, 1], turn_deg = [0, 0, 0], twist_deg = 0, random = [1, 1, 1], flatten = "plane" }}
+[body.drag]
+[body.pressure]
 [body.contact]
 [body.solver]
 [body.regions.NAME]
@@ -267,6 +269,7 @@ keys = [{{ t = 0 }}]
 [field]
 [text]
 [output]
+[wind]
 [sweep.values]
 )",
                                               material),

@@ -6,13 +6,16 @@
 
 namespace supple::test {
 
-void expect_derivative_of_objective(const BodyDescription& body, const std::string& name) {
+void expect_derivative_of_objective(const BodyDescription& body, const std::string& name, const Wind& wind,
+                                    const std::vector<PartAir>& air) {
   const Model model = build_model(body);
   OpenWorkspace w;
   StepInputs inputs = still_inputs(model);
   inputs.middle_targets = inputs.targets;
   inputs.middle_targets.array() += 0.003;
   inputs.targets.array() += 0.01;
+  inputs.wind = wind;
+  inputs.air = air;
   w.prepare(model, inputs.solver);
   State state = rest_state(model);
   state.x = shaken(model.rest, 0.01, 3);

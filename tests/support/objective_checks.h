@@ -10,8 +10,9 @@
 namespace supple::test {
 
 // Checks at a random deformed state that the gradient is the derivative of the value, and that a difference from a
-// reference is the difference of the values. name: the name that messages give.
-void expect_derivative_of_objective(const BodyDescription& body, const std::string& name);
+// reference is the difference of the values. name: the name that messages give. wind, air: as in StepInputs.
+void expect_derivative_of_objective(const BodyDescription& body, const std::string& name, const Wind& wind = {},
+                                    const std::vector<PartAir>& air = {});
 
 struct AgainstStaying {
   double staying;  // g(q), with the handles at their targets [J]

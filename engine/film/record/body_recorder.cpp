@@ -75,7 +75,7 @@ BodyRecorder::BodyRecorder(World& world, std::size_t body, const RunFolder* fold
 void BodyRecorder::start_energy_balance(const EnergyBalance& balance) {
   OpenWorkspace& w = moving().workspace();
   w.prepare(model(), moving().inputs().solver);
-  energy_budget_.start(model(), world_.scene().gravity, state(), w, balance);
+  energy_budget_.start(model(), moving().inputs(), state(), w, balance);
 }
 
 void BodyRecorder::resume(const BodyRow& row) {

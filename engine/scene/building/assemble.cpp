@@ -10,6 +10,7 @@
 #include "scene/building/unplaced_body.h"
 #include "scene/definition/rotation.h"
 #include "scene/reading/body_pieces.h"
+#include "sim/air/closed_surface.h"
 
 namespace supple {
 namespace {
@@ -179,6 +180,12 @@ void set_substances(Body& body, std::vector<Problem>& problems) {
   }
 }
 
+// Notes a drag that has no air to come from.
+void note_drag(const SceneDef& scene, Body& body) {
+  if (!body.def.drag || scene.wind) return;
+  body.notes.push_back(fmt::format("body '{}' has a drag, but the scene has no [wind] and so no air", body.def.name));
+}
+
 // Makes the springs of cloth, with their rest lengths in the world.
 void weave_springs(Body& body) {
   const ClothDef& def = *body.def.cloth;
@@ -294,6 +301,19 @@ void add_handle(Body& body, const HandleDef& def, std::vector<Problem>& problems
 
 namespace {
 
+// Refuses a pressure in a surface that encloses nothing.
+void check_gas(Body& body, std::vector<Problem>& problems) {
+  const BodyDescription& description = body.description;
+  const Triangles surface =
+      description.surface.rows() > 0 ? description.surface : boundary_faces(description.mesh.tets);
+  const std::string reason = why_not_closed(surface, description.mesh.rest);
+  body.holds_gas = reason.empty();
+  if (!reason.empty())
+    problems.push_back(at(body.def.pressure_place, fmt::format("pressure of body '{}': a pressure needs a closed "
+                                                               "surface, and its surface {}",
+                                                               body.def.name, reason)));
+}
+
 // Sets all that follows from the definition once the mesh is in its place, except for the handles.
 void set_values(Body& body, const SceneDef& scene, std::vector<Problem>& problems) {
   const BodyDef& def = body.def;
@@ -302,9 +322,13 @@ void set_values(Body& body, const SceneDef& scene, std::vector<Problem>& problem
   body.description.precision = def.solver.precision;
   body.description.integrator = def.solver.integrator;
   body.description.damping = def.solver.damping;
-  if (def.cloth) return weave(body);
-  body.description.density = def.total_mass ? *def.total_mass / body.volume : def.body_density();
-  set_substances(body, problems);
+  if (def.cloth) {
+    weave(body);
+  } else {
+    body.description.density = def.total_mass ? *def.total_mass / body.volume : def.body_density();
+    set_substances(body, problems);
+  }
+  if (def.pressure && !body.holds_gas) check_gas(body, problems);
 }
 
 }  // namespace
@@ -359,6 +383,7 @@ std::vector<Body> assemble(const SceneDef& scene, const SlowWork& work) {
       for (double& overhang : body.description.overhang) overhang *= scale_of(body);
       check_distance(body, problems);
       note_size(body);
+      note_drag(scene, body);
       if (!def.cloth) body.volume = quality(body.description.mesh).volume;
       set_values(body, scene, problems);
       if (def.pattern_size && *def.pattern_size < 1e-3 * bounds_of(body.description.mesh.rest).diagonal()) {

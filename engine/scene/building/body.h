@@ -32,6 +32,7 @@ struct Body {
   std::vector<SourceFile> files;     // the files from which its mesh and looks were read
   std::vector<std::string> regions;  // names by tag
   double volume = 0;                 // of its tetrahedra at rest [m^3]
+  bool holds_gas = false;            // its surface was found to be closed, which a pressure needs
   ClothMesh cloth;
   TriMesh skin;                                 // the surface of a body made from one, in the file's frame
   std::shared_ptr<const SurfaceColors> colors;  // colours of `skin`; null where it has the body's own

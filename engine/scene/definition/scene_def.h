@@ -198,7 +198,10 @@ struct BodyDef {
   SubstanceDef substance;            // of solids
   StartDef start;
   StartInside start_inside = StartInside::move;
-  Vec3 velocity = Vec3(0, 0, 0);  // at the start [m/s]
+  Vec3 velocity = Vec3(0, 0, 0);         // at the start [m/s]
+  std::optional<DragCoefficients> drag;  // nothing: the usual ones on cloth, and none on solids
+  std::optional<GasFilling> pressure;    // of gas in its surface
+  FilePlace pressure_place;              // in the file, for messages once the surface is known
   BodyContactDef contact;
   std::vector<RegionDef> regions;
   std::vector<HandleDef> handles;
@@ -369,7 +372,8 @@ struct SceneDef {
   double fps = 30;
   int substeps = 1;
   Vec3 gravity = Vec3(0, -9.81, 0);
-  std::uint64_t seed = 1;  // of random start states
+  std::uint64_t seed = 1;    // of random start states, and of gusts
+  std::optional<Wind> wind;  // nothing: there is no air
   std::vector<BodyDef> bodies;
   std::vector<ColliderDef> colliders;
   CameraDef camera;

@@ -336,6 +336,9 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
        "an error"},
       StartInside::move);
   body.velocity = table.vector({"velocity", "m/s", "at the start"}, Vec3(0, 0, 0));
+  body.drag = read_drag(table);
+  body.pressure = read_pressure(table);
+  body.pressure_place = table.place("pressure");
   body.contact = read_contact(table);
   std::set<std::string> names;
   for (const ConfigTable& row : table.tables({"handles", "", "vertices that follow a motion from outside"})) {

@@ -35,8 +35,9 @@ SceneDef read_scene(Config& config) {
   scene.substeps =
       root.integer({"substeps", "", "steps a frame: h = 1 / (fps substeps)"}, scene.substeps, Range::between(1, 1000));
   scene.gravity = root.vector({"gravity", "m/s^2", "acceleration of free fall"}, scene.gravity);
-  scene.seed =
-      static_cast<std::uint64_t>(root.integer({"seed", "", "of random start states"}, 1, Range::between(0, 2e9)));
+  scene.seed = static_cast<std::uint64_t>(
+      root.integer({"seed", "", "of random start states and of gusts"}, 1, Range::between(0, 2e9)));
+  scene.wind = read_wind(root, scene.seed);
   SolverDef defaults;
   if (const auto solver = root.table({"solver", "", "for all bodies"})) defaults = read_solver(*solver, defaults);
   std::set<std::string> names;

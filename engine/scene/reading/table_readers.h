@@ -31,6 +31,13 @@ SurfaceOptions read_surface_options(const ConfigTable& table);
 // Reads a `solver` table, of the whole scene or of a body. Keys that are absent keep their defaults.
 SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults);
 
+// Reads [wind] of a scene's root; nothing where it is absent. seed: of the gusts.
+std::optional<Wind> read_wind(const ConfigTable& root, std::uint64_t seed);
+
+// These read the tables `drag` and `pressure` of a body; nothing where they are absent.
+std::optional<DragCoefficients> read_drag(const ConfigTable& body);
+std::optional<GasFilling> read_pressure(const ConfigTable& body);
+
 ColliderDef read_collider(const ConfigTable& table);
 
 // Reads [camera]. Keys that contradict each other are problems, and keys of a motion that are not in order of time.

@@ -12,11 +12,14 @@ struct LivePattern {
 };
 
 constexpr ChangeCost nothing{}, new_factor{true, false, false}, new_rule{false, true, false},
-    new_surface{false, false, true};
+    new_surface{false, false, true}, tried{.trial = true};
 
 // The first pattern that covers a path decides. A body's solver has the same keys as the scene's.
 constexpr auto patterns = std::to_array<LivePattern>({
     {"gravity", nothing},
+    {"wind.velocity", nothing},
+    {"wind.gusts", nothing},
+    {"wind.density", nothing},
     {"substeps", new_factor},
     {"solver.method", new_rule},
     {"solver.factor", new_factor},
@@ -43,6 +46,8 @@ constexpr auto patterns = std::to_array<LivePattern>({
     {"body[].regions", new_factor},
     {"body[].label", nothing},
     {"body[].contact", nothing},
+    {"body[].drag", nothing},
+    {"body[].pressure", tried},
     {"body[].density", new_factor},
     {"body[].total_mass", new_factor},
     {"body[].cloth.stretch", new_factor},
@@ -99,6 +104,7 @@ ChangeCost& ChangeCost::operator|=(const ChangeCost& other) {
   factor |= other.factor;
   rule |= other.rule;
   surface |= other.surface;
+  trial |= other.trial;
   return *this;
 }
 

@@ -14,6 +14,9 @@ struct ChangeCost {
   bool factor = false;   // A and its factor: the body's stiffness, mass or time step
   bool rule = false;     // what the method keeps from step to step
   bool surface = false;  // the drawn surface of a collider
+  // Nothing is recomputed, but whether a body can take the value is known only once the body is there, so that replays
+  // are tried before they run.
+  bool trial = false;
 
   ChangeCost& operator|=(const ChangeCost& other);
   const char* text() const;  // for people; empty when nothing is made anew

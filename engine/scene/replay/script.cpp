@@ -139,7 +139,7 @@ bool is_whole_number(const Config& scene, const std::string& path) {
 }  // namespace
 
 void open_tables(Config& document) {
-  std::vector<std::string> tables = {"camera", "look", "solver"};
+  std::vector<std::string> tables = {"camera", "look", "solver", "wind"};
   if (document.value_at("collider")) tables.emplace_back("solver.contact");
   for (const std::string& table : tables) {
     if (!document.value_at(table)) document.put(table, *ConfigValue::parse("{}"), {}, {});
@@ -392,7 +392,10 @@ std::vector<LiveKey> Script::live(std::optional<int> frame) const {
   const double time = frame ? frame_time(*frame, parts_->start.fps) : at_start;
   Config document = parts_->document_at(time, parts_->changes.size());
   open_tables(document);
-  for (const BodyDef& body : parts_->start.bodies) open_table_of(document, "body." + body.name + ".contact.self");
+  for (const BodyDef& body : parts_->start.bodies) {
+    open_table_of(document, "body." + body.name + ".contact.self");
+    if (body.cloth) open_table_of(document, "body." + body.name + ".drag.normal");
+  }
   (void)read_scene(document);
   return live_keys(document);
 }

@@ -9,7 +9,7 @@ namespace {
 const TimedChange* only_change(const std::vector<const TimedChange*>& at_work, const std::string& body) {
   const TimedChange* only = nullptr;
   for (const TimedChange* change : at_work) {
-    if (!change->cost.factor || (!change->object.empty() && change->object != body)) continue;
+    if (!(change->cost.factor || change->cost.trial) || (!change->object.empty() && change->object != body)) continue;
     if (only != nullptr) return nullptr;
     only = change;
   }
@@ -26,7 +26,8 @@ void try_changes(const Script& script, std::vector<Body> bodies) {
   };
   for (int frame = 0; frame < script.scene().frames; ++frame) {
     const std::vector<const TimedChange*> at_work = script.at_work(frame);
-    if (std::none_of(at_work.begin(), at_work.end(), [](const TimedChange* change) { return change->cost.factor; }))
+    if (std::none_of(at_work.begin(), at_work.end(),
+                     [](const TimedChange* change) { return change->cost.factor || change->cost.trial; }))
       continue;
     const SceneDef scene = script.scene_at(frame);
     for (std::size_t b = 0; b < bodies.size(); ++b) {

@@ -14,7 +14,7 @@ using Work = SurfaceWork::Parts;
 constexpr double deep = 0.02;           // over the size of the smaller part
 constexpr std::size_t deep_share = 8;   // one of so many points that are asked must begin the step so deep
 constexpr double most_favoured = 0.25;  // over the size of the smaller part
-constexpr double alike = 0.99;          // cosine of directions of which one is enough
+constexpr double one_way = 0.99;        // cosine of directions of which one is enough
 
 // Holds the points of one part that begin the step inside the other.
 struct Inside {
@@ -52,7 +52,7 @@ void add_normals(const Inside& inside, double sign, std::vector<Vec3>& direction
     const Vec3 normal = (x.row(corners[1]).transpose() - first).cross(x.row(corners[2]).transpose() - first);
     if (!(normal.norm() > 0)) continue;
     const Vec3 direction = sign * normal.normalized();
-    if (std::ranges::none_of(directions, [&](const Vec3& known) { return known.dot(direction) > alike; }))
+    if (std::ranges::none_of(directions, [&](const Vec3& known) { return known.dot(direction) > one_way; }))
       directions.push_back(direction);
   }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/contact/find_contacts.h"
+#include "sim/solver/begin_step.h"
 #include "sim/solver/energy_gain.h"
 
 namespace supple {
@@ -64,9 +65,11 @@ Energies energies(const Model& model, const State& state, const Vec3& gravity, O
   return result;
 }
 
-void EnergyBudget::start(const Model& model, const Vec3& gravity, const State& state, OpenWorkspace& w,
+void EnergyBudget::start(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& w,
                          const EnergyBalance& balance) {
-  parts_ = supple::energies(model, state, gravity, w);
+  parts_ = supple::energies(model, state, inputs.gravity, w);
+  begin_air(model, inputs, state, w.air);
+  parts_.gas = w.air.gas_energy(model, state.x);
   balance_ = balance;
   balance_.total = parts_.total();
   most_ = balance_.exchanged;
@@ -92,6 +95,8 @@ void EnergyBudget::before_step(const Model& model, const StepInputs& inputs, con
   set_motion(model, state, inputs.gravity, now);
   if (model.id != model_) now.elastic = elastic_energy(model, w, state.x);
   now.springs = spring_energy(model, inputs.targets, state.x);
+  begin_air(model, inputs, state, w.air);
+  now.gas = w.air.gas_energy(model, state.x);
   if (!knows_springs_) parts_.springs = now.springs;
   add_to_budget(now.total() - parts_.total());
   parts_ = now;
@@ -103,11 +108,14 @@ void EnergyBudget::after_step(const Model& model, const StepInputs& inputs, cons
                               OpenWorkspace& w) {
   if (model.free < model.vertices) add_to_budget(work_of_handles(model, q, w));
   if (!w.current.contacts.empty()) add_to_budget(work_of_contacts(inputs, q, w));
+  // before_step() has begun the air's forces, also for a body whose step was made in a model of several.
+  if (w.air.act()) add_to_budget(w.air.work(model, state.x));
   set_motion(model, state, inputs.gravity, parts_);
   // Backward Euler has evaluated the elements where the step ends; the step of an island, not those of each body.
   const bool is_known = model.scheme.theta == 1 && std::isfinite(w.current.elastic);
   parts_.elastic = is_known ? w.current.elastic : elastic_energy(model, w, state.x);
   parts_.springs = spring_energy(model, inputs.targets, state.x);
+  parts_.gas = w.air.gas_energy(model, state.x);
   parts_.contact = contact_energy(w.current.contacts, state.x);
   sum_up();
 }
@@ -117,7 +125,7 @@ void EnergyBudget::sum_up() {
   const double own = balance_.total - balance_.put_in;
   lowest_ = std::min(lowest_, own);
   balance_.from_nothing = own - lowest_;
-  most_ = std::max(most_, parts_.kinetic + std::abs(parts_.elastic) + parts_.springs);
+  most_ = std::max(most_, parts_.kinetic + std::abs(parts_.elastic) + parts_.springs + std::abs(parts_.gas));
   balance_.exchanged = most_ + moved_;
 }
 
@@ -127,6 +135,7 @@ void EnergyBudget::after_untangling(const Model& model, const StepInputs& inputs
   set_motion(model, state, inputs.gravity, parts_);
   parts_.elastic = elastic_energy(model, w, state.x);
   parts_.springs = spring_energy(model, inputs.targets, state.x);
+  parts_.gas = w.air.gas_energy(model, state.x);
   parts_.contact = contact_energy(w.current.contacts, state.x);
   add_to_budget(parts_.total() - before);
   sum_up();

@@ -10,17 +10,18 @@ namespace supple {
 struct Energies {
   double kinetic = 0, elastic = 0, gravitational = 0;  // the last one against the rest shape [J]
   double springs = 0;                                  // energy of the springs of soft handles [J]
+  double gas = 0;                                      // energy of gas in closed surfaces, against the rest shape [J]
   double contact = 0;                                  // energy of overlaps with colliders; not in the total [J]
-  double total() const { return kinetic + elastic + gravitational + springs; }
+  double total() const { return kinetic + elastic + gravitational + springs + gas; }
 };
-// Returns the energies without those of soft handles and contact, which stay 0. Evaluates all elements; the workspace
-// must be prepared for the model.
+// Returns the energies without those of soft handles, gas and contact, which stay 0. Evaluates all elements; the
+// workspace must be prepared for the model.
 Energies energies(const Model& model, const State& state, const Vec3& gravity, OpenWorkspace& workspace);
 
 // Holds what a body has, and what it was given, since its film began [J].
 struct EnergyBalance {
   double total = 0;
-  double put_in = 0;        // by handles, contact and changed values; negative where more was taken
+  double put_in = 0;        // by handles, contact, air and changed values; negative where more was taken
   double from_nothing = 0;  // how far total - put_in is above its lowest value so far
   // The largest sum of kinetic, elastic and springs' energy so far, and all that was put in or taken; the other values
   // are compared with it.
@@ -31,8 +32,9 @@ struct EnergyBalance {
 // the body from outside may give any.
 class EnergyBudget {
  public:
-  // Begins with a state, before the next frame changes anything. balance: the balance at this state.
-  void start(const Model& model, const Vec3& gravity, const State& state, OpenWorkspace& workspace,
+  // Begins with a state, before the next frame changes anything. inputs: of which gravity and gas are read. balance:
+  // the balance at this state.
+  void start(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& workspace,
              const EnergyBalance& balance = {});
   // Counts the energy of soft handles' springs before the first step, by the targets at that time; later steps find by
   // themselves how far the targets have moved. Does nothing where this energy is known.

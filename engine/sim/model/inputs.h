@@ -1,5 +1,5 @@
-// Defines the inputs of one step: gravity, targets of handles, colliders and their motions, and the
-// settings of the solver, which may change from step to step.
+// Defines the inputs of one step: gravity, air, targets of handles, colliders and their motions, and the settings of
+// the solver, which may change from step to step.
 #pragma once
 
 #include <optional>
@@ -12,6 +12,7 @@
 #include "geometry/meshes/pose.h"
 #include "geometry/shapes/shape.h"
 #include "sim/linear/precision.h"
+#include "sim/model/air_inputs.h"
 #include "sim/model/budget_cuts.h"
 #include "sim/model/start_matrix.h"
 
@@ -114,6 +115,8 @@ struct StepInputs {
   // What parts of the model touch each other, ordered by surface; empty: none do, and nothing is paid for it.
   std::vector<Meeting> meetings = {};
   std::optional<BudgetCuts> repeated_cuts = {};  // cuts of an earlier run, in place of the clock, for the same bits
+  Wind wind = {};
+  std::vector<PartAir> air = {};  // by part; empty: air acts on none and none holds gas, and nothing is paid for it
 };
 
 // Tells whether a budget of time may end the step's searches: its own, or that of an earlier run whose cuts it repeats.

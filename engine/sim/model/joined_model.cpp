@@ -55,6 +55,7 @@ void place_surfaces(const std::vector<const Model*>& bodies, Model& joined) {
   joined.surface.resize(triangles, 3);
   Eigen::Index at = 0;
   for (std::size_t p = 0; p < bodies.size(); ++p) {
+    joined.parts[p].first_triangle = static_cast<std::int32_t>(at);
     for (Eigen::Index t = 0; t < bodies[p]->surface.rows(); ++t, ++at) {
       for (int k = 0; k < 3; ++k) joined.surface(at, k) = joined_vertex(joined.parts[p], bodies[p]->surface(t, k));
     }

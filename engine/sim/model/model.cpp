@@ -196,6 +196,7 @@ Model build_model(const BodyDescription& body) {
                       .solid = body.mesh.tets.rows() > 0}};
   model.size = size;
   number_surface(model, body.surface.rows() > 0 ? body.surface : boundary_faces(body.mesh.tets));
+  model.parts.front().triangles = static_cast<std::int32_t>(model.surface.rows());
   for (std::size_t h = 0; h < body.handles.size(); ++h) {
     for (const std::int32_t v : body.handles[h].vertices)
       model.handled.push_back({model.internal_of[v], static_cast<std::int32_t>(h)});

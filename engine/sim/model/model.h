@@ -77,11 +77,13 @@ struct Part {
   std::string name;
   std::int32_t first_free = 0, free = 0;  // its vertices that the solver moves: first_free .. first_free + free - 1
   std::int32_t first_held = 0, held = 0;  // its vertices that hard handles hold
-  double size = 0;                        // diagonal of the rest bounding box [m]
-  double mass = 0;                        // of the free vertices [kg]
-  bool solid = false;                     // has tetrahedra, and so an inside
-  bool floats = false;                    // nothing holds it: A has its translations as known eigenvectors
-  double drag = 0;                        // beta/h
+  // Its triangles in Model::surface: first_triangle .. first_triangle + triangles - 1.
+  std::int32_t first_triangle = 0, triangles = 0;
+  double size = 0;      // diagonal of the rest bounding box [m]
+  double mass = 0;      // of the free vertices [kg]
+  bool solid = false;   // has tetrahedra, and so an inside
+  bool floats = false;  // nothing holds it: A has its translations as known eigenvectors
+  double drag = 0;      // beta/h
 };
 
 // As a System it is A = w M/h^2 + (e theta^2 + beta/h) L + springs of handles.

@@ -12,6 +12,10 @@ void inertial_prediction(const Model& model, const StepInputs& inputs, const Sta
   y = (state.x + h * state.v).rowwise() + (model.scheme.force * h * h * inputs.gravity).transpose();
 }
 
+void begin_air(const Model& model, const StepInputs& inputs, const State& state, AirForces& air) {
+  air.begin(model, inputs, state.x, state.time + model.scheme.theta * model.time_step);
+}
+
 namespace {
 
 // Held vertices are at their targets in both iterates; soft handles pull towards theirs.
@@ -39,6 +43,7 @@ void begin_step(const Model& model, const StepInputs& inputs, const State& state
   SUPPLE_CHECK(state.x.rows(), ==, model.vertices);
   SUPPLE_CHECK(state.v.rows(), ==, model.vertices);
   inertial_prediction(model, inputs, state, w.y);
+  begin_air(model, inputs, state, w.air);
   w.start_positions = &state.x;
   w.correction.threads = w.threads;
   w.second_level_serves = false;

@@ -1,4 +1,5 @@
-// Begins a step: computes y, moves the handles to their targets, and puts the matrix of the model in force.
+// Begins a step: computes y, asks for the wind, moves the handles to their targets, and puts the matrix of the model in
+// force.
 #pragma once
 
 #include "sim/model/inputs.h"
@@ -7,8 +8,13 @@
 
 namespace supple {
 
-// Computes y = q + h v + f h^2 M^-1 f_ext of every vertex, in the model's order [m].
+// Computes y = q + h v + f h^2 M^-1 f_ext of every vertex, in the model's order [m]. Air is not among f_ext: its drag
+// depends on the velocity that the step leads to, and is part of the objective.
 void inertial_prediction(const Model& model, const StepInputs& inputs, const State& state, Positions& y);
+
+// Begins the forces of air and gas in a step from a state: with the wind at the time at which the integrator evaluates
+// forces.
+void begin_air(const Model& model, const StepInputs& inputs, const State& state, AirForces& air);
 
 // Makes the first part of step(): writes y, and the targets of handles in place of their y, into the workspace. Also
 // leaves the current iterate's x = y.

@@ -15,7 +15,7 @@ void bow_search(const Model& model, const StepInputs& inputs, double slope, Open
   if (!w.is_bowed) return;
   w.turning.correct(model, w.second_level.system(), w.current.x, w.solve_scratch, w.bow);
   keep_bow_on_planes(model, inputs.solver.contact, w.current.contacts, w.current.x, w.direction, w.correction, w.bow);
-  if (is_isolated(model, w.current.contacts)) take_out_translation(model, w.bow);
+  if (is_isolated(model, w, w.current.contacts)) take_out_translation(model, w.bow);
 }
 
 }  // namespace supple

@@ -31,17 +31,17 @@ double work_of_contacts(const Positions& q, OpenWorkspace& w) {
   return work;
 }
 
-// Returns g without its inertia and without contact [J].
+// Returns g without its inertia, without contact and without drag [J].
 double potential_of(const Model& model, const OpenWorkspace& w, const Iterate& at) {
   return at.g - inertial_energy(model, w, at.x) - contact_energy(at.contacts, at.x) -
-         friction_energy(at.contacts, at.x);
+         friction_energy(at.contacts, at.x) - w.air.drag_energy(model, at.x);
 }
 
 }  // namespace
 
 double work_from_outside(const Model& model, const Positions& q, OpenWorkspace& w) {
   return (model.free < model.vertices ? work_of_handles(model, q, w) : 0) +
-         (w.current.contacts.empty() ? 0 : work_of_contacts(q, w));
+         (w.current.contacts.empty() ? 0 : work_of_contacts(q, w)) + w.air.work(model, w.current.x);
 }
 
 namespace {

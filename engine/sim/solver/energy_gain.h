@@ -1,6 +1,6 @@
-// Computes what handles and contacts put into a body, and tells whether a step has gained energy from nothing. An exact
-// minimiser of backward Euler's objective cannot gain energy where the elastic energy is convex between q and x: M (x -
-// q - h v) / h^2 = m g - grad E(x) gives K' - K + E(x) - E(q) - m g . (x - q) <= the work of what is moved from
+// Computes what handles, contacts and air put into a body, and tells whether a step has gained energy from nothing. An
+// exact minimiser of backward Euler's objective cannot gain energy where the elastic energy is convex between q and x:
+// M (x - q - h v) / h^2 = m g - grad E(x) gives K' - K + E(x) - E(q) - m g . (x - q) <= the work of what is moved from
 // outside. Steps that were left far from their minimum can gain energy again and again, without bound.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace supple {
 // the workspace's trial energies and forces.
 double work_of_handles(const Model& model, const Positions& q, OpenWorkspace& workspace);
 
-// Returns the work over a step from q to the current iterate that hard handles and contacts do on the body, by the
+// Returns the work over a step from q to the current iterate that hard handles, contacts and air do on the body, by the
 // forces at its end and the ways of the vertices: what backward Euler takes for that work [J]. Evaluates elements as
 // work_of_handles() does.
 double work_from_outside(const Model& model, const Positions& q, OpenWorkspace& workspace);

@@ -31,6 +31,7 @@ void HessianMatrix::assemble(const Model& model, OpenWorkspace& workspace, bool 
   if (theta < 1) workspace.middle = theta * x + (1 - theta) * workspace.start_copy;
   element_matrices(model, workspace.threads, theta < 1 ? workspace.middle : x, project, scratch_);
   assemble(model, scratch_, workspace.current.contacts, x);
+  if (workspace.air.act()) workspace.air.add_stiffness(model, x, project, *this);
 }
 
 bool try_factorize_projected(HessianMatrix& hessian, ChangingFactor& factor) {

@@ -42,7 +42,7 @@ FoundDirection next_direction(const Model& model, const StepInputs& inputs, Open
   const TimedPhase timed(w.clock, Phase::other, "direction");
   for (;;) {
     w.report.slope = rule.direction(model, inputs, w);
-    if (is_isolated(model, w.current.contacts)) w.report.slope += restore_common_translation(model, w);
+    if (is_isolated(model, w, w.current.contacts)) w.report.slope += restore_common_translation(model, w);
     const double slope = w.report.slope;
     if (below_resolution(model, w)) return {true, slope};
     if (slope < 0) return {false, slope};

@@ -220,7 +220,19 @@ void SystemInverse::apply(const Model& model, const StepInputs& inputs, OpenWork
   iterations_ = w.report.iterations;
   w.second_level_serves = has_second_level_;
   w.correction.second = has_second_level_ ? &w.second_level : nullptr;
-  apply_inverse(model, inputs.solver.contact, w.correction, w.solve_scratch, r, z);
+  const auto solve = [&](Positions& right, Positions& solution) {
+    apply_inverse(model, inputs.solver.contact, w.correction, w.solve_scratch, right, solution);
+  };
+  if (w.air.fixed_amounts() == 0) return solve(r, z);
+  // A solve may take directions out of the list of contacts, which the last one is to find whole.
+  const std::vector<StiffDirection> wanted = w.correction.wanted;
+  w.gas.begin(model, w.air, w.current.x, [&](Positions& right, Positions& solution) {
+    w.correction.wanted = wanted;
+    solve(right, solution);
+  });
+  w.correction.wanted = wanted;
+  solve(r, z);
+  w.gas.correct(z);
 }
 
 bool SystemInverse::bend(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {

@@ -23,7 +23,7 @@ struct NewtonSystem::Parts {
   }
   void assemble(const Model& model, OpenWorkspace& w);
   bool take_planes_ahead(const Iterate& at, const Positions& direction);
-  bool solve(const Model& model, const std::vector<Contact>& contacts, Positions& direction);
+  bool solve(const Model& model, OpenWorkspace& w);
 };
 
 NewtonSystem::NewtonSystem() = default;
@@ -58,13 +58,21 @@ bool NewtonSystem::Parts::take_planes_ahead(const Iterate& at, const Positions& 
 
 // Solves for the direction. A body that nothing holds then gets its translation as Newton's law says, because a factor
 // in single precision does not keep momentum to round-off.
-bool NewtonSystem::Parts::solve(const Model& model, const std::vector<Contact>& contacts, Positions& direction) {
+bool NewtonSystem::Parts::solve(const Model& model, OpenWorkspace& w) {
+  const std::vector<Contact>& contacts = w.current.contacts;
+  Positions& direction = w.direction;
   if (!try_factorize_projected(hessian, factor)) {
     direction.setZero();
     return false;
   }
   factor.solve(right.data(), direction.data());
-  if (std::ranges::any_of(model.parts, &Part::floats)) {
+  if (w.air.fixed_amounts() > 0) {
+    w.gas.begin(model, w.air, w.current.x,
+                [&](const Positions& force, Positions& motion) { factor.solve(force.data(), motion.data()); });
+    w.gas.correct(direction);
+  }
+  // Drag resists translations, too, so that they do not follow from inertia alone.
+  if (std::ranges::any_of(model.parts, &Part::floats) && !w.air.have_drag()) {
     pushed = right;
     for (std::size_t i = 0; i < contacts.size(); ++i)
       contacts[i].stencil.spread(-(stiffness[i] * contacts[i].stencil.of_free(direction)), pushed);
@@ -83,7 +91,7 @@ double NewtonSystem::direction(const Model& model, const StepInputs& inputs, Ope
   const Iterate& at = w.current;
   const auto slope_of = [&] { return (at.gradient.array() * w.direction.array()).sum(); };
   p.assemble(model, w);
-  if (!p.solve(model, at.contacts, w.direction)) return 0;
+  if (!p.solve(model, w)) return 0;
   double slope = slope_of();
   if (!std::isfinite(slope)) {
     w.direction.setZero();
@@ -92,7 +100,7 @@ double NewtonSystem::direction(const Model& model, const StepInputs& inputs, Ope
   if (inputs.solver.contact.direction != ContactDirection::low_rank) return slope;
   for (int i = 0; i < most_corrections && p.take_planes_ahead(at, w.direction); ++i) {
     w.correction.unbent = w.direction;
-    if (!p.solve(model, at.contacts, w.direction) || !(slope_of() < 0)) {
+    if (!p.solve(model, w) || !(slope_of() < 0)) {
       w.direction = w.correction.unbent;
       break;
     }

@@ -216,6 +216,11 @@ Change evaluate_against(const Model& model, OpenWorkspace& workspace, Iterate& a
                           bends ? place_of(at.x, workspace.middle) : nullptr,
                           bends && reference != nullptr ? place_of(reference->x, workspace.reference_middle) : nullptr};
   add_vertices(model, workspace, terms, gradient, change);
+  if (workspace.air.act()) {
+    const AirChange air = workspace.air.add(model, workspace.threads, at.x, reference_x, workspace.direction, gradient);
+    change.value += air.value;
+    change.slope += air.slope;
+  }
   if (terms.damped && reference == nullptr) terms.add_held_drag(change.value);
   if (bends && reference == nullptr) terms.add_held_bending(change.value);
   if (!planes.empty()) {

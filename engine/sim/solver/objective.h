@@ -1,5 +1,6 @@
 // Evaluates g(x) of equation 3, or of another integrator or with damping, at iterates: values, value differences
-// without cancellation, and gradients, in a fixed order of summation. Contacts are added as contact.h has them. Not
+// without cancellation, and gradients, in a fixed order of summation. Contacts are added as contact.h has
+// them, and air as sim/air/air_forces.h has it. Not
 // here: where to evaluate next (lbfgs.h for directions, line_search.h for points along them, iterations.h for the
 // loop).
 #pragma once

@@ -6,6 +6,8 @@
 #include <functional>
 
 #include "base/threads.h"
+#include "sim/air/air_forces.h"
+#include "sim/air/gas_solve.h"
 #include "sim/coarse/second_level.h"
 #include "sim/coarse/turning.h"
 #include "sim/contact/contact_direction.h"
@@ -30,6 +32,7 @@ struct OpenWorkspace {
   Positions y;                                 // inertial prediction, n x 3 [m]
   const Positions* start_positions = nullptr;  // q, where the step starts: the caller's, n x 3 [m]
   Positions start_copy;                        // a copy of q, n x 3 [m]; empty unless the model's forces depend on q
+  AirForces air;                               // of the step; without any where StepInputs::air is empty
   Positions target;  // targets of soft handles, by free vertex, n_free x 3 [m]; empty without soft handles
 
   // The solver is at the current iterate, and tries the trial iterate.
@@ -68,6 +71,7 @@ struct OpenWorkspace {
 
   ContactWork contact;
   ContactCorrection correction;
+  GasSolve gas;  // of the last direction, where a part holds a fixed amount of gas
 
   // The following members are memory within one call and hold nothing between calls.
   Positions middle;             // where forces are evaluated, n x 3 [m]; empty where that is the iterate itself

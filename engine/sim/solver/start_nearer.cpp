@@ -96,7 +96,7 @@ void start_where_it_was(StepContext& c) {
   };
   set_trial_by_parts(
       c, is_between_vertices, [](const Part&) { return false; }, move);
-  if (inertial_energy(c.model, w, w.trial.x) < far_better * w.current.g || c.model.energy_may_be_negative)
+  if (inertial_energy(c.model, w, w.trial.x) < far_better * w.current.g || energy_may_be_negative(c))
     start_from_trial_below(far_better, c);
 }
 

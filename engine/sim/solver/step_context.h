@@ -30,4 +30,9 @@ struct StepContext {
   bool gave_up = false;  // a search gave up, because its line searches tried too many points
 };
 
+// Tells whether the part of g that is not inertia may be below zero: by a material, or by gas that has spread.
+inline bool energy_may_be_negative(const StepContext& c) {
+  return c.model.energy_may_be_negative || c.w.air.have_gas();
+}
+
 }  // namespace supple

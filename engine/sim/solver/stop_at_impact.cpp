@@ -46,7 +46,7 @@ void stop_at_impacts(StepContext& c, const std::vector<Impact>& impacts) {
       x.middleRows(first, free) = q.middleRows(first, free) + impacts[p].share * (x - q).middleRows(first, free);
   }
   const bool by_colliders = std::ranges::any_of(impacts, [](const Impact& impact) { return impact.collider >= 0; });
-  if (!by_colliders && is_isolated(c.model, {})) keep_center(c.model, c.w.y, x);
+  if (!by_colliders && is_isolated(c.model, c.w, {})) keep_center(c.model, c.w.y, x);
   for (std::size_t p = 0; p < impacts.size(); ++p) {
     const int collider = impacts[p].collider;
     if (collider >= 0 && c.inputs.collider_motions[collider].moves())

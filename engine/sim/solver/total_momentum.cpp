@@ -14,11 +14,11 @@ Eigen::RowVector3d weighted_sum(const Model& model, const Positions& x) {
 
 }  // namespace
 
-bool is_isolated(const Model& model, const std::vector<Contact>& contacts) {
+bool is_isolated(const Model& model, const OpenWorkspace& w, const std::vector<Contact>& contacts) {
   const auto is_stopped = [](const Contact& contact) {
     return contact.other.is_collider() && (contact.depth > 0 || contact.friction > 0);
   };
-  return model.parts.size() > 1 && std::ranges::all_of(model.parts, &Part::floats) &&
+  return model.parts.size() > 1 && !w.air.have_drag() && std::ranges::all_of(model.parts, &Part::floats) &&
          std::ranges::none_of(contacts, is_stopped);
 }
 

@@ -8,8 +8,8 @@
 
 namespace supple {
 
-// Tells whether nothing holds or stops the parts of a joined model from outside.
-bool is_isolated(const Model& model, const std::vector<Contact>& contacts);
+// Tells whether nothing holds, stops or drags the parts of a joined model from outside.
+bool is_isolated(const Model& model, const OpenWorkspace& w, const std::vector<Contact>& contacts);
 
 // Shifts all free vertices, so that their common centre of mass is that of y.
 void keep_center(const Model& model, const Positions& y, Positions& x);
