@@ -5,6 +5,7 @@
 
 #include "scene/building/assemble.h"
 #include "scene/building/collision_set.h"
+#include "scene/definition/air_of_body.h"
 #include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 
@@ -27,6 +28,8 @@ struct Film {
     Threads threads(thread_count);
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       StepInputs inputs{scene.gravity, {}, {}, bodies[b].def.solver.settings, &set.colliders};
+      inputs.wind = scene.wind.value_or(Wind{});
+      if (const std::optional<PartAir> air = air_of(scene, bodies[b].def)) inputs.air = {*air};
       State state = start_state(models[b], bodies[b]);
       OpenWorkspace w;
       w.threads = &threads;

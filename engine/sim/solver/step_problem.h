@@ -1,6 +1,6 @@
-// Describes the problem of one step alone: all on which g of equation 3 depends, before anything touches a collider, in
-// the order of the input file instead of the model's. It serves comparisons of solvers on stored states, and other
-// programs. Not here: files (film/record/state_file.h).
+// Describes the problem of one step alone: all on which g of equation 3 depends, before anything touches a collider and
+// without air and gas, in the order of the input file instead of the model's. It serves comparisons of solvers on
+// stored states, and other programs. Not here: files (film/record/state_file.h).
 #pragma once
 
 #include "sim/model/inputs.h"
