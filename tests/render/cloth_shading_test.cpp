@@ -12,9 +12,12 @@ namespace cloth_shading_test {
 
 constexpr int width = 240, height = 160;
 
+ClothLook with_yarn(double yarn) { return {std::nullopt, yarn, 0}; }
+ClothLook with_hem(double hem) { return {std::nullopt, 0, hem}; }
+
 // Describes an upright square of a metre on a plain backdrop, which shows its front to positive z.
 struct Sheet {
-  ClothLook look;
+  ClothLook look = {};
   float hollow = 0;
   double side = 1;  // of the cloth on which the camera stands
   double distance = 4;
@@ -84,9 +87,9 @@ TEST(ClothShading, TheBackIsDarkerAndPalerWithoutAColour) {
 
 TEST(ClothShading, YarnsAreSeenWherePixelsAreFineAndGoneBeforeTheyMakeMoire) {
   const double pixel_size = 2 * std::tan(10 * 3.14159 / 180) * 4 / height;  // on the cloth [m]
-  EXPECT_GT(contrast(Sheet{.look = {.yarn = 6 * pixel_size}}.draw()), 20);
-  EXPECT_LT(contrast(Sheet{.look = {.yarn = 2.6 * pixel_size}}.draw()), 1);
-  EXPECT_LT(contrast(Sheet{.look = {.yarn = 0.7 * pixel_size}}.draw()), 1);
+  EXPECT_GT(contrast(Sheet{.look = with_yarn(6 * pixel_size)}.draw()), 20);
+  EXPECT_LT(contrast(Sheet{.look = with_yarn(2.6 * pixel_size)}.draw()), 1);
+  EXPECT_LT(contrast(Sheet{.look = with_yarn(0.7 * pixel_size)}.draw()), 1);
   // The mean brightness stays.
   const auto mean = [](const Image& image) {
     double sum = 0;
@@ -94,13 +97,13 @@ TEST(ClothShading, YarnsAreSeenWherePixelsAreFineAndGoneBeforeTheyMakeMoire) {
       for (int x = width / 2 - 24; x < width / 2 + 24; ++x) sum += brightness(pixel(image, x, y));
     return sum / (48 * 48);
   };
-  const double fine = mean(Sheet{.look = {.yarn = 1e-4}}.draw()),
-               coarse = mean(Sheet{.look = {.yarn = 6 * pixel_size}}.draw());
+  const double fine = mean(Sheet{.look = with_yarn(1e-4)}.draw()),
+               coarse = mean(Sheet{.look = with_yarn(6 * pixel_size)}.draw());
   EXPECT_NEAR(coarse / fine, 1, 0.05);
 }
 
 TEST(ClothShading, AHemRunsAlongTheOpenBorderAlone) {
-  const Image plain = Sheet{}.draw(), hemmed = Sheet{.look = {.hem = 0.1}}.draw();
+  const Image plain = Sheet{}.draw(), hemmed = Sheet{.look = with_hem(0.1)}.draw();
   const auto at = [](double x) { return int(std::lround(width / 2 + x * height / (2 * std::tan(0.17453) * 4))); };
   const auto change = [&](double x) {
     return brightness(pixel(hemmed, at(x), height / 2)) - brightness(pixel(plain, at(x), height / 2));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/meshes/cloth.h"
 #include "sim/elements/triangle_stiffness.h"
 #include "sim/model/bending.h"
 #include "sim/solver/begin_step.h"
@@ -107,9 +108,9 @@ TEST(Cloth, ScalarStiffnessIsAThirdOfTheProjectedTrace) {
       std::visit([&]<class M>(const M& m) { TriangleFormula<M>(m).scalar_stiffness(x, field, 0.0, scalar); }, membrane);
       const SixBySix whole = stiffness_at(membrane, one, corners, true);
       const double scale = whole.norm();
-      EXPECT_NEAR(scalar[0], whole.topLeftCorner<3, 3>().trace() / 3, 1e-9 * scale);
-      EXPECT_NEAR(scalar[1], whole.bottomLeftCorner<3, 3>().trace() / 3, 1e-9 * scale);
-      EXPECT_NEAR(scalar[2], whole.bottomRightCorner<3, 3>().trace() / 3, 1e-9 * scale);
+      EXPECT_NEAR(scalar[0], whole.topLeftCorner(3, 3).trace() / 3, 1e-9 * scale);
+      EXPECT_NEAR(scalar[1], whole.bottomLeftCorner(3, 3).trace() / 3, 1e-9 * scale);
+      EXPECT_NEAR(scalar[2], whole.bottomRightCorner(3, 3).trace() / 3, 1e-9 * scale);
     }
   }
 }

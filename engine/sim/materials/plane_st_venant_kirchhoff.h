@@ -12,7 +12,7 @@
 namespace supple {
 
 struct PlaneStVenantKirchhoff {
-  static constexpr std::string_view name = "stvk";
+  static constexpr std::string_view name = "st-venant-kirchhoff";
   static constexpr bool isotropic = true;
   double mu = 0;
   double lambda = 0;
