@@ -90,7 +90,7 @@ TEST(ClothScenes, ASurfaceIsSewnAtItsSeamAndKeepsItsBorders) {
   const Body plain = assemble(scene_of(start + " }\nmaterial = \"cotton\"\n")).front();
   EXPECT_EQ(plain.description.mesh.rest.rows(), 24 * 7);
   const double chord = 24 * 2 * std::sin(std::numbers::pi / 24);
-  EXPECT_NEAR(flat_area(plain.description), 2 * chord, 1e-9);
+  EXPECT_NEAR(flat_area(plain.description), 2 * chord, 1e-6);
   const Body fine = assemble(scene_of(start + ", edge = 0.1 }\nmaterial = \"cotton\"\nsize = 1\n")).front();
   // The edge is that of the finished body, which has half of the file's size.
   EXPECT_NEAR(mean_edge(fine.cloth.surface.triangles, fine.description.mesh.rest), 0.1, 0.015);
@@ -137,7 +137,7 @@ TEST(ClothScenes, MistakesAreNamedWithTheirPlace) {
   const std::string grid = "cloth = { extent = [1, 1], cells = [4, 4] }\n";
   const std::pair<std::string, std::string> texts[] = {
       {grid, "'material' is missing"},
-      {grid + "material = \"coton\"\n", "material = \"coton\""},
+      {grid + "material = \"coton\"\n", "material = 'coton': must be cotton, denim, silk, jersey or felt"},
       {grid + "material = { model = \"woven\", warp = 100 }\n", "'shear' is missing"},
       {grid + "material = { model = \"corotated\", mu = 1 }\n", "model"},
       {grid + "material = \"cotton\"\nfibre = { kappa = 3 }\n", "fibre: not of cloth"},
@@ -148,9 +148,11 @@ TEST(ClothScenes, MistakesAreNamedWithTheirPlace) {
   };
   for (const auto& [text, message] : texts) {
     const std::vector<std::string> found = problems_of("[[body]]\n" + text);
-    ASSERT_FALSE(found.empty()) << text;
-    EXPECT_NE(found.front().find(message), std::string::npos) << found.front() << "\nfor " << text;
-    EXPECT_EQ(found.front().find("scene.toml:"), 0u) << found.front();
+    EXPECT_TRUE(std::ranges::any_of(found,
+                                    [&](const std::string& one) {
+                                      return one.starts_with("scene.toml:") && one.find(message) != std::string::npos;
+                                    }))
+        << (found.empty() ? "nothing" : found.front()) << "\nfor " << text;
   }
   const std::string hold = "[[body.handles]]\nname = \"rim\"\nselect = { border = true }\n";
   EXPECT_THROW(

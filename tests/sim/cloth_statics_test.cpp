@@ -40,7 +40,7 @@ std::vector<std::int32_t> vertices_left_of(const Positions& points, double x) {
 }
 
 TEST(ClothStatics, AHangingStripIsStretchedByItsWeight) {
-  constexpr double length = 1, density = 0.2, gravity = 9.81, young = 5e5, thickness = 4e-4;
+  constexpr double length = 1, density = 0.2, gravity = 9.81, young = 5e6, thickness = 4e-4;
   const double stiffness = young * thickness;
   const PlaneLame lame = PlaneLame::from_young(young, 0.3, thickness);
   const std::vector<Membrane> membranes = {PlaneNeoHookean::from(lame, 1), PlaneNeoHookean::from(lame, 0.05),
@@ -88,7 +88,7 @@ TEST(ClothStatics, ACantileverEndsWhereAHeavyElasticaDoesOnGridsAndOnUnevenMeshe
   constexpr double length = 0.2, width = 0.05, density = 0.15, gravity = 9.81;
   constexpr int along = 40, across = 8, clamped = 2;  // columns of vertices that are held
   const double cell = length / along;
-  for (const double bending : {3e-6, 1e-5, 3e-5, 1e-4, 1e-3}) {
+  for (const double bending : {1e-5, 3e-5, 1e-4, 3e-4, 1e-3}) {
     for (const bool even : {true, false}) {
       TriMesh mesh = cloth_grid({length + cell * clamped, width}, {along + clamped, across}).surface;
       std::mt19937 random(7);
