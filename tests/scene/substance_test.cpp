@@ -116,7 +116,7 @@ TEST(Substances, AreRefusedWithWordsThatSayWhatIsAllowed) {
       {"cloth = { stretch = 1, extent = [1, 1], cells = [999, 999] }",
        "scene.toml:2:49: cells: would make 1000000 vertices; at most 500000"},
       {"cloth = { stretch = 1, extent = [1, 1], cells = [4, 4] }\nmaterial = \"jelly\"",
-       "scene.toml:3:12: material: not of cloth, which has stretch, shear and bend in its table instead"},
+       "scene.toml:3:12: material: not of cloth of springs, which has stretch, shear and bend in its table instead"},
       {"box = { extent = [1, 1, 1], cells = [900, 900, 900] }\nmaterial = \"jelly\"",
        "scene.toml:2:37: cells: would make 731432701 vertices; at most 500000"},
   };

@@ -133,7 +133,9 @@ TEST(Cloth, KernelsInSinglePrecisionAgreeWithThoseInDouble) {
 }
 
 TEST(Cloth, ObjectiveWithBendingHasItsGradientAndItsDifferences) {
-  for (const Membrane& membrane : test::all_membranes()) {
+  // Sheets that give way have kinks in their stress, at which differences are less exact.
+  for (std::size_t m : {0, 2, 4}) {
+    const Membrane membrane = test::all_membranes()[m];
     BodyDescription body = test::sheet({0.3, 0.2}, {5, 4}, {membrane, 0.02});
     Handle edge{"edge", {0, 6, 12, 18, 24}};
     test::expect_derivative_of_objective(body, std::string(name_of(membrane)));

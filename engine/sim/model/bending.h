@@ -1,9 +1,9 @@
 // Builds the energy by which cloth resists bending, E = 1/2 tr(x^T Q x) with a constant Q. On a sheet that does not
-// stretch the angle of a hinge is |K x| / l, where K is linear in the positions and l the length of the edge, so that
-// energies which are quadratic in curvature are quadratic in x (Bergou, Wardetzky, Harmon, Zorin, Grinspun 2006, "A
-// quadratic bending model for inextensible surfaces"). Q is part of A as a whole. Which curvature a triangle has
-// follows from all three of its hinges (bending.cpp): a sum of squares over single hinges, as in that paper, depends on
-// how the mesh is made by up to a factor of 3. All cloth is flat at rest. Not here: the evaluation beside elements
+// stretch, the angle of a hinge between two triangles is |K x|, where K is linear in the positions, so that energies
+// which are quadratic in curvature are quadratic in x (Bergou, Wardetzky, Harmon, Zorin, Grinspun 2006, "A quadratic
+// bending model for inextensible surfaces"). Q is part of A as a whole. The curvature of a triangle follows from all of
+// its hinges together (bending.cpp): a sum of squares over single hinges, as in that paper, depends on how the mesh is
+// made by up to a factor of 3. All cloth is flat at rest. Not here: the evaluation beside elements
 // (solver/objective.cpp).
 #pragma once
 
