@@ -1,10 +1,11 @@
-// Builds the energy by which cloth resists bending, E = 1/2 tr(x^T Q x) with a constant Q. On a sheet that does not
-// stretch, the angle of a hinge between two triangles is |K x|, where K is linear in the positions, so that energies
-// which are quadratic in curvature are quadratic in x (Bergou, Wardetzky, Harmon, Zorin, Grinspun 2006, "A quadratic
-// bending model for inextensible surfaces"). Q is part of A as a whole. The curvature of a triangle follows from all of
-// its hinges together (bending.cpp): a sum of squares over single hinges, as in that paper, depends on how the mesh is
-// made by up to a factor of 3. All cloth is flat at rest. Not here: the evaluation beside elements
-// (solver/objective.cpp).
+// Builds the energy by which cloth resists bending, E = 1/2 tr(x^T Q x) with a constant Q: B/2 times the squared mean
+// curvature (the sum of both), which on a sheet that does not stretch is the Laplacian of the positions (Bergou,
+// Wardetzky, Harmon, Zorin, Grinspun 2006, "A quadratic bending model for inextensible surfaces"). Q is part of A as a
+// whole. Inside the sheet it is sum_v |L_v x|^2 / A_v, with the cotangent Laplacian L_v of each vertex and the area
+// A_v that is nearest to it. A vertex on a border has no such Laplacian; for its share of the area, the hinges
+// between triangles count. Elsewhere squares of single hinges, as in that paper, would make a sheet up to three times
+// too stiff in some directions, and sheets that fold at every other vertex too soft. All cloth is flat at rest. Not
+// here: the evaluation beside elements (solver/objective.cpp).
 #pragma once
 
 #include <vector>
