@@ -60,7 +60,7 @@ void dress(inout Seen seen, inout vec4 material) {
 }
 
 // Returns the light that fibres which stand off the cloth scatter at grazing angles: the distribution of Estevez and Kulla
-// (2017, "Production friendly microfacet sheen BRDF", equation 2) with the denominator of Neubelt and Pettineo (2013,
+// (2017, "Production friendly microfacet sheen BRDF") with the denominator of Neubelt and Pettineo (2013,
 // "Crafting a next-gen material pipeline for The Order: 1886", cloth).
 vec3 sheen(vec3 n, vec3 v, vec3 albedo, float lit, float open) {
   const float roughness = 0.35;

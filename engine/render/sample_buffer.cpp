@@ -86,8 +86,19 @@ void SampleBuffer::clear(int y, int from, int to) {
   std::fill_n(nearness_.data() + at(from, y), count, 0.0f);
 }
 
-SampleBuffer::Box SampleBuffer::fill(const std::array<ScreenCorner, 3>& given, std::uint32_t number, Facing facing,
+SampleBuffer::Box SampleBuffer::fill(const std::array<ScreenCorner, 3>& corners, std::uint32_t number, Facing facing,
                                      Samples which) {
+  return fill_as<false>(corners, facing, {number, which, 1});
+}
+
+SampleBuffer::Box SampleBuffer::fill_lifted(const std::array<ScreenCorner, 3>& corners, std::uint32_t number,
+                                            float factor) {
+  return fill_as<true>(corners, Facing::both, {number, Samples::all, factor});
+}
+
+template <bool lifted>
+SampleBuffer::Box SampleBuffer::fill_as(const std::array<ScreenCorner, 3>& given, Facing facing,
+                                        const Written& written) {
   constexpr Box nothing = {0, -1, 0, -1};
   std::array<ScreenCorner, 3> v = given;
   std::int64_t area =
@@ -107,18 +118,17 @@ SampleBuffer::Box SampleBuffer::fill(const std::array<ScreenCorner, 3>& given, s
   // reaches eight pixels beyond it adds a tenth.
   constexpr int small = 80 * parts;
   if (right - left < small && high - low < small) {
-    cover<std::int32_t>(v, box, double(area), number, which);
+    cover<std::int32_t, lifted>(v, box, double(area), written);
   } else {
-    cover<std::int64_t>(v, box, double(area), number, which);
+    cover<std::int64_t, lifted>(v, box, double(area), written);
   }
   return box;
 }
 
 // The edges' functions and the nearness, which is linear on the screen, are computed for eight samples at once
 // (Pineda 1988, "A parallel algorithm for polygon rasterization").
-template <class Integer>
-void SampleBuffer::cover(const std::array<ScreenCorner, 3>& v, const Box& box, double area, std::uint32_t number,
-                         Samples which) {
+template <class Integer, bool lifted>
+void SampleBuffer::cover(const std::array<ScreenCorner, 3>& v, const Box& box, double area, const Written& written) {
   using Register = typename RegisterOf<Integer>::Type;
   constexpr int wide = 16;  // pixels
   const Integer x = Integer(box.left) * parts, y = Integer(box.low) * parts;
@@ -129,11 +139,11 @@ void SampleBuffer::cover(const std::array<ScreenCorner, 3>& v, const Box& box, d
   double near_row = v[0].nearness + near_x * (double(x) - v[0].x) + near_y * (double(y) - v[0].y);
   const auto [furthest_corner, nearest_corner] = std::minmax({v[0].nearness, v[1].nearness, v[2].nearness});
   const Floats least = Floats{} + furthest_corner, most = Floats{} + nearest_corner;
-  const Words own_number = Words{} + static_cast<std::int32_t>(number);
+  const Words own_number = Words{} + static_cast<std::int32_t>(written.number);
   Words to_x, to_y, allowed;
   std::memcpy(&to_x, lane_x_.data(), sizeof to_x);
   std::memcpy(&to_y, lane_y_.data(), sizeof to_y);
-  std::memcpy(&allowed, allowed_[which == Samples::all ? 0 : 1].data(), sizeof allowed);
+  std::memcpy(&allowed, allowed_[written.which == Samples::all ? 0 : 1].data(), sizeof allowed);
   const Register edge_x = __builtin_convertvector(to_x, Register), edge_y = __builtin_convertvector(to_y, Register);
   std::array<Register, 3> lane_edge;
   for (std::size_t k = 0; k < 3; ++k) lane_edge[k] = edges[k].by_x * edge_x + edges[k].by_y * edge_y;
@@ -159,7 +169,13 @@ void SampleBuffer::cover(const std::array<ScreenCorner, 3>& v, const Box& box, d
       std::memcpy(&number_before, numbers, sizeof number_before);
       Floats here = near < least ? least : near;
       here = here > most ? most : here;
-      const Words inside = __builtin_convertvector((e[0] | e[1] | e[2]) >= 0, Words) & allowed & (here > near_before);
+      Words inside = __builtin_convertvector((e[0] | e[1] | e[2]) >= 0, Words) & allowed;
+      if constexpr (lifted) {
+        inside &= near_before < 0 ? here > -near_before : written.factor * here > near_before;
+        here = -here;
+      } else {
+        inside &= here > near_before;
+      }
       here = inside ? here : near_before;
       number_before = inside ? own_number : number_before;
       std::memcpy(nearness, &here, sizeof here);

@@ -40,17 +40,28 @@ class SampleBuffer {
   // Writes a triangle into the samples that it covers and in which it is nearest. number: not zero. Where triangles
   // share an edge, each sample on it belongs to one of them. Returns the pixels that it may have covered.
   Box fill(const std::array<ScreenCorner, 3>& corners, std::uint32_t number, Facing facing, Samples which);
+  // Does the same for a triangle that is seen as if it were nearer by a factor, at least 1, than it is. Among
+  // themselves such triangles hide each other by where they are. They must be filled after all others.
+  Box fill_lifted(const std::array<ScreenCorner, 3>& corners, std::uint32_t number, float factor);
 
   // Return the numbers in a pixel's samples, zero where there is none, and their nearness.
   const std::uint32_t* numbers(int x, int y) const { return &numbers_[at(x, y)]; }
+  // A nearness is negative where a lifted triangle is seen.
   const float* nearness(int x, int y) const { return &nearness_[at(x, y)]; }
 
  private:
   static constexpr int lanes = 8;
 
-  template <class Integer>
-  void cover(const std::array<ScreenCorner, 3>& corners, const Box& box, double area, std::uint32_t number,
-             Samples which);
+  // Says how a triangle is compared with what a sample shows.
+  struct Written {
+    std::uint32_t number;
+    Samples which;
+    float factor;
+  };
+  template <bool lifted>
+  Box fill_as(const std::array<ScreenCorner, 3>& corners, Facing facing, const Written& written);
+  template <class Integer, bool lifted>
+  void cover(const std::array<ScreenCorner, 3>& corners, const Box& box, double area, const Written& written);
   std::size_t at(int x, int y) const { return (std::size_t(y) * stride_ + x) * samples_; }
 
   int width_, height_, samples_;

@@ -46,7 +46,7 @@ double cut_into_colliders(const DrawMesh& mesh) {
 }
 
 // Returns the factors on the nearness of a mesh's vertices that bring them closer to the eye, as if they were higher by
-// a depth [m]. They change smoothly along the mesh, so that its own folds still hide each other as they do.
+// a depth [m]. They count against other meshes alone: the mesh's own folds hide each other as they lie.
 std::vector<float> lifted(const std::vector<std::uint32_t>& triangles, const std::vector<float>& positions,
                           const Vec3& eye, double depth) {
   const auto place = [&positions](std::uint32_t v) {
@@ -180,14 +180,41 @@ void Visibility::cut(std::vector<WorldCorner>& polygon) const {
   }
 }
 
-void Visibility::fill(const std::array<ScreenCorner, 3>& corners, std::uint32_t number, const DrawMesh& mesh) {
+void Visibility::fill(const std::array<ScreenCorner, 3>& corners, std::uint32_t number, const DrawMesh& mesh,
+                      float factor) {
   // Closed bodies hide their far sides. A ghost is written into every second sample, so that half of each pixel shows
   // what lies behind.
-  const SampleBuffer::Box box = buffer_.fill(corners, number, mesh.two_sided ? Facing::both : Facing::towards,
-                                             mesh.ghost ? Samples::every_second : Samples::all);
+  const SampleBuffer::Box box = factor > 0
+                                    ? buffer_.fill_lifted(corners, number, factor)
+                                    : buffer_.fill(corners, number, mesh.two_sided ? Facing::both : Facing::towards,
+                                                   mesh.ghost ? Samples::every_second : Samples::all);
   if (box.right < box.left) return;
   for (int row = box.low / Tiles::edge; row <= box.high / Tiles::edge; ++row) {
     for (int column = box.left / Tiles::edge; column <= box.right / Tiles::edge; ++column) tiles_.mark(column, row);
+  }
+}
+
+// number: of the mesh's first triangle, counted from one.
+void Visibility::fill_mesh(const DrawMesh& mesh, const std::vector<float>& positions, const Eigen::Matrix4f& view,
+                           std::uint32_t number) {
+  project(positions, view);
+  const std::vector<std::uint32_t>& triangles = mesh.triangles;
+  const double depth = cut_into_colliders(mesh);
+  const std::vector<float> factors =
+      depth > 0 ? lifted(triangles, positions, eye_of(view), depth) : std::vector<float>();
+  for (std::size_t t = 0; t + 2 < triangles.size(); t += 3, ++number) {
+    const std::uint32_t a = triangles[t], b = triangles[t + 1], c = triangles[t + 2];
+    if ((outside_[a] & outside_[b] & outside_[c]) != 0) continue;
+    const float factor = factors.empty() ? 0 : (factors[a] + factors[b] + factors[c]) / 3;
+    if ((outside_[a] | outside_[b] | outside_[c]) == 0) {
+      fill({corners_[a], corners_[b], corners_[c]}, number, mesh, factor);
+      continue;
+    }
+    polygon_.clear();
+    for (const std::uint32_t v : {a, b, c}) polygon_.push_back(corner_at(&positions[3 * std::size_t(v)], view));
+    cut(polygon_);
+    const auto corner = [&](std::size_t k) { return on_screen(polygon_[k]); };
+    for (std::size_t k = 2; k < polygon_.size(); ++k) fill({corner(0), corner(k - 1), corner(k)}, number, mesh, factor);
   }
 }
 
@@ -195,35 +222,14 @@ void Visibility::find(const std::vector<DrawMesh>& meshes, const std::vector<std
                       const Eigen::Matrix4f& view, double nearest, double pixel) {
   clear();
   nearest_ = static_cast<float>(nearest);
-  std::uint32_t number = 0;
-  const Vec3 eye = eye_of(view);
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
-    project(positions[m], view);
-    const std::vector<std::uint32_t>& triangles = meshes[m].triangles;
-    const double depth = cut_into_colliders(meshes[m]);
-    const std::vector<float> factors = depth > 0 ? lifted(triangles, positions[m], eye, depth) : std::vector<float>();
-    for (std::size_t v = 0; v < factors.size(); ++v) corners_[v].nearness *= factors[v];
-    for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
-      ++number;
-      const std::uint32_t a = triangles[t], b = triangles[t + 1], c = triangles[t + 2];
-      if ((outside_[a] & outside_[b] & outside_[c]) != 0) continue;
-      if ((outside_[a] | outside_[b] | outside_[c]) == 0) {
-        fill({corners_[a], corners_[b], corners_[c]}, number, meshes[m]);
-        continue;
-      }
-      polygon_.clear();
-      for (const std::uint32_t v : {a, b, c}) polygon_.push_back(corner_at(&positions[m][3 * std::size_t(v)], view));
-      cut(polygon_);
-      const float factor = factors.empty() ? 1 : (factors[a] + factors[b] + factors[c]) / 3;
-      const auto corner = [&](std::size_t k) {
-        ScreenCorner result = on_screen(polygon_[k]);
-        result.nearness *= factor;
-        return result;
-      };
-      for (std::size_t k = 2; k < polygon_.size(); ++k) fill({corner(0), corner(k - 1), corner(k)}, number, meshes[m]);
+  for (const bool cloth : {false, true}) {
+    std::uint32_t number = 1;
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+      if ((cut_into_colliders(meshes[m]) > 0) == cloth) fill_mesh(meshes[m], positions[m], view, number);
+      number += static_cast<std::uint32_t>(meshes[m].triangles.size() / 3);
     }
+    SUPPLE_CHECK(number, ==, patches_.size() + 1);
   }
-  SUPPLE_CHECK(number, ==, patches_.size());
   resolve(static_cast<float>(pixel));
 }
 
@@ -289,8 +295,8 @@ void Visibility::resolve_pixel(const std::uint32_t* numbers, const float* nearne
   for (int s = 0; s < samples; ++s) {
     if (numbers[s] == 0) continue;
     const bool same =
-        numbers[s] == numbers[first] ||
-        (patches_[numbers[s] - 1] == patch && std::abs(nearness[s] - nearness[first]) < 6 * pixel * nearness[s]);
+        numbers[s] == numbers[first] || (patches_[numbers[s] - 1] == patch &&
+                                         std::abs(nearness[s] - nearness[first]) < 6 * pixel * std::abs(nearness[s]));
     if (!same) surfaces[1] = (surfaces[1] & 0xff000000u) | numbers[s];
     surfaces[same ? 0 : 1] |= 1u << (24 + s);
   }

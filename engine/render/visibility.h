@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -37,7 +38,7 @@ class Visibility {
   std::vector<float> sample_places() const { return buffer_.places(); }
 
   // Returns the distance along the viewing direction of what the first sample of a pixel shows; infinity for nothing.
-  double distance(int x, int y) const { return 1.0 / buffer_.nearness(x, y)[0]; }
+  double distance(int x, int y) const { return 1.0 / std::abs(buffer_.nearness(x, y)[0]); }
 
  private:
   // A corner that is cut off has to be computed before it is projected: clip coordinates and the height over the
@@ -52,7 +53,10 @@ class Visibility {
   ScreenCorner on_screen(const WorldCorner& corner) const;
   std::uint8_t outside(const WorldCorner& corner) const;
   void cut(std::vector<WorldCorner>& polygon) const;
-  void fill(const std::array<ScreenCorner, 3>& corners, std::uint32_t number, const DrawMesh& mesh);
+  // factor: on the nearness against other meshes; 0 where the mesh is seen where it is.
+  void fill(const std::array<ScreenCorner, 3>& corners, std::uint32_t number, const DrawMesh& mesh, float factor);
+  void fill_mesh(const DrawMesh& mesh, const std::vector<float>& positions, const Eigen::Matrix4f& view,
+                 std::uint32_t number);
   void resolve(float pixel);
   template <int samples>
   bool resolve_tile(int column, int row, float pixel);

@@ -151,7 +151,7 @@ SparseRows matrix_of(const Entries& entries, Eigen::Index rows, Eigen::Index col
 }
 
 // Returns the matrix that moves control points outwards by as much as the limit surface lies inside of them. Limits are
-// those of Hoppe et al. (1994, "Piecewise smooth surface reconstruction", appendix A).
+// those of Hoppe et al. (1994, "Piecewise smooth surface reconstruction").
 SparseRows quasi_interpolation(const std::vector<NodeRing>& rings) {
   Entries entries;
   for (std::size_t n = 0; n < rings.size(); ++n) {

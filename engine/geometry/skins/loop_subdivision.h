@@ -3,8 +3,8 @@
 //
 // Loop's surface lies inside of the curves of its control points, so that a cloth would sink into a ball and its
 // smallest wrinkles would lose a third of their height. So the control points are first moved outwards by as much as
-// the limit surface lies inside: one step of the quasi-interpolation of Litke, Levin and Schroeder (2001, "Fitting
-// subdivision surfaces", section 4). What is left is of fourth order in the length of an edge.
+// the limit surface lies inside: one step of quasi-interpolation, as Litke, Levin and Schroeder (2001, "Fitting
+// subdivision surfaces") take it for Catmull and Clark's surfaces. What is left of that is small where it is smooth.
 #pragma once
 
 #include "geometry/skins/skin.h"
