@@ -14,7 +14,7 @@ vec3 along(vec3 way) { return way / max(length(way), 1e-12); }
 // Bends the normal over the yarns of a plain weave, and darkens the gaps between them. Before the yarns along an axis
 // become narrower than three pixels they have faded to their mean, so that they make no moire. pixel: over a yarn.
 void weave(inout Seen seen, inout vec3 albedo, vec2 at, vec2 pixel, vec3 first_axis, vec3 second_axis) {
-  vec2 clear = clamp(2.2 - 6.0 * pixel, 0.0, 1.0);
+  vec2 clear = clamp(3.6 - 12.0 * pixel, 0.0, 1.0);
   vec2 within = fract(at) - 0.5;
   // Of the yarns that cross, those along the first axis lie above in every second place.
   float above = mod(floor(at.x) + floor(at.y), 2.0) < 0.5 ? 1.0 : -1.0;

@@ -52,8 +52,8 @@ TEST(DrawnCloth, IsAsFineAsItsPicturesShow) {
     return drawn.skin.rest.triangles.rows();
   };
   EXPECT_EQ(triangles_at(0.05, DrawnAs::skin), 200);
-  EXPECT_EQ(triangles_at(0.01, DrawnAs::skin), 800);
-  EXPECT_EQ(triangles_at(0.005, DrawnAs::skin), 3200);
+  EXPECT_EQ(triangles_at(0.008, DrawnAs::skin), 800);
+  EXPECT_EQ(triangles_at(0.004, DrawnAs::skin), 3200);
   EXPECT_EQ(triangles_at(1e-5, DrawnAs::skin), 12800) << "three times at most";
   EXPECT_EQ(triangles_at(1e-5, DrawnAs::elements), 200);
 }

@@ -83,6 +83,32 @@ TEST(ClothScenes, ElasticSheetsTakeYoungsModulusTimesThicknessAndThePlatesBendin
   EXPECT_NEAR(fabric.bending, 1e-3 / 12 / 0.9375, 1e-12);  // E t^3 / (12 (1 - nu^2))
 }
 
+TEST(ClothScenes, AFabricMayHaveOtherNumbersAndKeepsItsDensity) {
+  const SceneDef scene = scene_of(
+      "[[body]]\ncloth = { extent = [1, 1], cells = [2, 2] }\nmaterial = { fabric = \"silk\", warp = 500, bend = 3e-6 "
+      "}\n");
+  const FabricDef& fabric = *scene.bodies[0].cloth->fabric;
+  const auto& woven = std::get<Woven>(fabric.fabric.membrane);
+  EXPECT_EQ(woven.warp, 500);
+  EXPECT_EQ(woven.weft, 250);
+  EXPECT_EQ(woven.limit, 1.1);
+  EXPECT_EQ(fabric.fabric.bending, 3e-6);
+  EXPECT_EQ(scene.bodies[0].body_density(), 0.035);
+}
+
+TEST(ClothScenes, EdgesThatDoNotSuitASurfaceAreRefused) {
+  const test::TemporaryFolder folder;
+  const std::string start = fmt::format("[[body]]\ncloth = {{ surface = \"{}\", edge = ", open_cylinder(folder.path));
+  for (const auto& [edge, message] : {std::pair("2", "is too long for a surface of 2 m"), {"0.001", "at most 1e+06"}}) {
+    try {
+      assemble(scene_of(start + edge + " }\nmaterial = \"cotton\"\n"));
+      ADD_FAILURE() << edge;
+    } catch (const InputError& error) {
+      EXPECT_NE(error.problems().front().message.find(message), std::string::npos) << error.problems().front().message;
+    }
+  }
+}
+
 TEST(ClothScenes, ASurfaceIsSewnAtItsSeamAndKeepsItsBorders) {
   const test::TemporaryFolder folder;
   const std::string file = open_cylinder(folder.path);

@@ -16,9 +16,22 @@ std::optional<ClothLook> cloth_look(const BodyDef& body, const Positions& rest) 
 
 double gloss_of(const BodyDef& body) { return body.gloss.value_or(body.cloth ? 0.08 : DrawMesh{}.gloss); }
 
+namespace {
+
+// Returns the triangles before the last level, between the same vertices: they cast the shadow, whose border shows no
+// edges of so few pixels. Each was cut into four, of which the first three have a corner of it as their first.
+Triangles before_last_level(const Triangles& triangles) {
+  Triangles before(triangles.rows() / 4, 3);
+  for (Eigen::Index t = 0; t < before.rows(); ++t)
+    before.row(t) << triangles(4 * t, 0), triangles(4 * t + 1, 0), triangles(4 * t + 2, 0);
+  return before;
+}
+
+}  // namespace
+
 void smooth_for_pixels(DrawnBody& drawn, const Positions& rest, double pixel) {
   if (drawn.weights.rows() > 0) return;
-  constexpr double longest = 7;  // pixels; with 10, silhouettes had corners in enlarged pictures
+  constexpr double longest = 12;  // pixels, where the cloth is nearest; at its middle they are about half as long
   constexpr int most_levels = 3;
   constexpr Eigen::Index most_triangles = 400'000;
   double edge = mean_edge(drawn.skin.rest.triangles, drawn.skin.rest.points);
@@ -29,7 +42,9 @@ void smooth_for_pixels(DrawnBody& drawn, const Positions& rest, double pixel) {
     edge /= 2;
     triangles *= 4;
   }
-  if (levels > 0) drawn.weights = subdivide(drawn.skin, drawn.vertex_of, rest, levels);
+  if (levels == 0) return;
+  drawn.weights = subdivide(drawn.skin, drawn.vertex_of, rest, levels);
+  drawn.casters = before_last_level(drawn.skin.rest.triangles);
 }
 
 // A smooth surface swings over by a part of an edge where it leaves the ground. The ground would hide it there, so it

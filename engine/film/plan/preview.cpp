@@ -42,13 +42,15 @@ std::string coarser(const SceneDef& scene, const BodyDef& body, double share) {
     return std::min(cells, std::max(2, static_cast<int>(std::lround(cells * factor))));
   };
   if (body.box) {
-    const double side = std::cbrt(share);
+    const double edge = std::cbrt(share);
     const Eigen::Vector3i& cells = body.box->cells;
-    return fmt::format("body.{}.box.cells=[{}, {}, {}]", body.name, fewer(cells.x(), side), fewer(cells.y(), side),
-                       fewer(cells.z(), side));
+    return fmt::format("body.{}.box.cells=[{}, {}, {}]", body.name, fewer(cells.x(), edge), fewer(cells.y(), edge),
+                       fewer(cells.z(), edge));
   }
-  if (body.cloth && body.cloth->mesh.empty()) {
-    const double side = std::sqrt(share);
+  const double side = std::sqrt(share);  // of surfaces
+  if (body.cloth && body.cloth->edge)
+    return fmt::format("body.{}.cloth.edge={}", table_of(body), *body.cloth->edge / side);
+  if (body.cloth && body.cloth->mesh.empty() && body.cloth->surface.empty()) {
     const Eigen::Vector2i& cells = body.cloth->cells;
     return fmt::format("body.{}.cloth.cells=[{}, {}]", body.name, fewer(cells.x(), side), fewer(cells.y(), side));
   }

@@ -1,5 +1,6 @@
 #include "scene/building/unplaced_body.h"
 
+#include <cmath>
 #include <numbers>
 
 #include "base/error.h"
@@ -25,9 +26,28 @@ WantedMesh wanted_mesh(const Body& body, const BodyDef& def) {
   return {def.vertices, body.source, content_name(body.files)};
 }
 
+double sheet_area(const TriMesh& surface) {
+  double area = 0;
+  for (const double share : vertex_areas(surface)) area += share;
+  return area;
+}
+
 // Makes triangles of the wanted size. An edge is given as it is in the world, where the body has its size.
 TriMesh of_edge(const TriMesh& surface, double edge, const BodyDef& def, Body& body) {
   const double scale = def.size ? *def.size / bounds_of(surface.points).extent().maxCoeff() : def.scale;
+  // What needs more triangles than this is refused before it is made.
+  constexpr double most_triangles = 1e6;
+  const double longest = scale * bounds_of(surface.points).extent().maxCoeff(),
+               area = scale * scale * sheet_area(surface);
+  if (edge > longest / 4)
+    throw InputError({{def.place, fmt::format("edge = {:g} m is too long for a surface of {:.3g} m: at most a quarter",
+                                              edge, longest)}});
+  const double triangles = area / (std::sqrt(3.0) / 4 * edge * edge);
+  if (triangles > most_triangles)
+    throw InputError(
+        {{def.place, fmt::format("edge = {:g} m would make {:.2g} triangles of a surface of {:.3g} m^2; at "
+                                 "most {:.0e}",
+                                 edge, triangles, area, most_triangles)}});
   RemeshOptions options;
   options.edge_length = edge / scale;
   options.crease_angle = std::numbers::pi;  // fabric has no creases; borders and seams of three sheets stay
@@ -35,6 +55,10 @@ TriMesh of_edge(const TriMesh& surface, double edge, const BodyDef& def, Body& b
   body.notes.push_back(fmt::format("{} triangles became {}, with edges of {:.3g} m on the average",
                                    surface.triangles.rows(), made.triangles.rows(),
                                    scale * mean_edge(made.triangles, made.points)));
+  const double lost = 1 - scale * scale * sheet_area(made) / area;
+  if (std::abs(lost) > 0.02)
+    body.notes.push_back(
+        fmt::format("its area changed by {:.2g} %: details finer than the edge are gone", -100 * lost));
   return made;
 }
 

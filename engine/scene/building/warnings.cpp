@@ -166,8 +166,10 @@ void warn_of_shared_space(const std::vector<Body>& bodies, std::vector<Warning>&
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (passings.crosses_itself(b, points[b]))
       warn(b, b,
-           fmt::format("cloth '{}' crosses itself at the start: contact holds each part on its side",
-                       bodies[b].def.name));
+           fmt::format(
+               "cloth '{}' crosses itself at the start: contact holds each part on its side, and it hardly moves "
+               "there; contact = {{ self = false }} lets it pass through itself",
+               bodies[b].def.name));
   }
   for (const auto& [a, b] : passings.find(points))
     warn(a, b,

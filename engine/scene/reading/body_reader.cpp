@@ -162,7 +162,7 @@ std::optional<ClothDef> read_cloth(const ConfigTable& body) {
   if (!cloth.mesh.empty() && cloth.mesh.extension() != ".mesh" && is_model(cloth.mesh))
     table->complain("mesh", fmt::format("mesh = '{}': is not a MEDIT .mesh; surface = '{}' reads it",
                                         cloth.mesh.filename().string(), cloth.mesh.filename().string()));
-  const bool is_grid = cloth.mesh.empty() && cloth.surface.empty();
+  const bool is_grid = !table->has("mesh") && !table->has("surface");
   if (is_grid) read_grid(*table, cloth);
   if (!is_grid) {
     for (const char* key : {"extent", "cells", "shear"}) {

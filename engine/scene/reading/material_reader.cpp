@@ -1,4 +1,5 @@
 // Reads materials and their presets.
+#include "scene/definition/fabrics.h"
 #include "scene/definition/presets.h"
 #include "scene/reading/table_readers.h"
 
@@ -174,6 +175,9 @@ std::string preset_in_full(const std::string& name) {
     return fmt::format("material = {{ model = \"{}\", young = {:g}, poisson = {:g} }}, density = {:g}{}",
                        name_of(preset.material()), preset.young, preset.poisson, preset.density,
                        preset.fibre > 0 ? fmt::format(", fibre = {{ kappa = {:g} }}", preset.fibre) : "");
+  }
+  for (const FabricPreset& preset : fabric_presets) {
+    if (name == preset.name) return fmt::format("material = {{ fabric = \"{}\" }}", name);
   }
   return "";
 }
