@@ -281,5 +281,25 @@ TEST(Visibility, AClothIsSeenWhereItCutsALittleIntoWhatItLiesOn) {
   EXPECT_GT(samples_of_bar(0.02, true), 1000) << "what stands out of a cloth is seen";
 }
 
+// What is lifted counts as nearer than it is against others, and not against what is lifted more or less.
+TEST(Visibility, LiftedTrianglesHideEachOtherByWhereTheyAre) {
+  const auto at = [](float nearness) {
+    return std::array{ScreenCorner{-9000, -9000, nearness}, ScreenCorner{9000, -9000, nearness},
+                      ScreenCorner{0, 9000, nearness}};
+  };
+  SampleBuffer buffer(8, 8, 4);
+  const auto seen = [&buffer] { return buffer.numbers(4, 4)[0]; };
+  buffer.fill(at(1), 1, Facing::both, Samples::all);
+  buffer.fill_lifted(at(0.9f), 2, 1.05f);
+  EXPECT_EQ(seen(), 1u);
+  buffer.fill_lifted(at(0.97f), 3, 1.05f);
+  EXPECT_EQ(seen(), 3u) << "it lies below the first, but less than it is lifted";
+  buffer.fill_lifted(at(0.96f), 4, 1.5f);
+  EXPECT_EQ(seen(), 3u) << "a far side is lifted more, and still behind";
+  buffer.fill_lifted(at(0.98f), 5, 1.03f);
+  EXPECT_EQ(seen(), 5u);
+  EXPECT_NEAR(std::abs(buffer.nearness(4, 4)[0]), 0.98, 1e-6);
+}
+
 }  // namespace visibility_test
 }  // namespace supple

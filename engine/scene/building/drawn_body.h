@@ -2,10 +2,10 @@
 #pragma once
 
 #include "geometry/skins/embedding.h"
-#include "geometry/skins/surface_weights.h"
 #include "geometry/skins/skin.h"
 #include "geometry/skins/skin_limit.h"
 #include "geometry/skins/surface_colors.h"
+#include "geometry/skins/surface_weights.h"
 #include "scene/building/assemble.h"
 
 namespace supple {
