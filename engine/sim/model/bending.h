@@ -25,12 +25,16 @@ Eigen::SparseMatrix<double> bending_matrix(const Model& model, const std::vector
 
 // Computes row v of Q z, from differences, so that it does not depend on where the cloth is [N].
 inline void bending_row(const Model::SparseRows& bending, const double* z, int v, double (&row)[3]) {
-  for (double& sum : row) sum = 0;
-  const double* own = z + 3 * std::size_t(v);
+  const double x = z[3 * std::size_t(v)], y = z[3 * std::size_t(v) + 1], up = z[3 * std::size_t(v) + 2];
+  double sum[3] = {0, 0, 0};  // stays in registers
   for (std::int32_t k = bending.begin[v]; k < bending.begin[v + 1]; ++k) {
     const double* other = z + 3 * std::size_t(bending.column[k]);
-    for (int c = 0; c < 3; ++c) row[c] += bending.value[k] * (other[c] - own[c]);
+    const double value = bending.value[k];
+    sum[0] += value * (other[0] - x);
+    sum[1] += value * (other[1] - y);
+    sum[2] += value * (other[2] - up);
   }
+  for (int c = 0; c < 3; ++c) row[c] = sum[c];
 }
 
 // Returns the diagonal entry of row v of Q, which takes what the others sum up to [N/m].

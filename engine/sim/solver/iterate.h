@@ -13,6 +13,7 @@ struct Iterate {
   Positions x;                    // positions, n x 3 [m]
   Positions gradient;             // of g, n_free x 3 [N]
   AlignedVector<double> energy;   // of the elements, by lane [J]
+  Positions bent;                 // forces of bending, n_free x 3 [N]; empty without bending
   std::vector<Contact> contacts;  // found at x; empty without colliders
   double g = 0;                   // the objective at x, with these contacts [J]
   double elastic = 0;             // the share in g of the elements [J]; not finite: not known

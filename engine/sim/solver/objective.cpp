@@ -42,6 +42,8 @@ struct VertexTerms {
   // Where the elastic energy is evaluated for the point, and for the reference: the same, or the middle of the step.
   const double* place;
   const double* reference_place;  // or null
+  double* bent;                   // takes the forces of bending
+  const double* reference_bent;   // those at the reference
 
   // Computes row v of beta/h L (p - q).
   void drag(int v, const double* p, double (&sum)[3]) const {
@@ -88,17 +90,20 @@ struct VertexTerms {
   // - r)^T Q (z + r), to which held vertices, where z = r, add nothing. The force needs no factor, because e theta = 1.
   double add_bending(int v, double (&gradient)[3]) const {
     const std::size_t at = 3 * std::size_t(v);
-    double of_place[3], of_reference[3], value = 0;
+    double of_place[3], value = 0;
     bending_row(model.bending, place, v, of_place);
     for (int c = 0; c < 3; ++c) gradient[c] += of_place[c];
+    if (v < model.free) {
+      for (int c = 0; c < 3; ++c) bent[at + c] = of_place[c];
+    }
     if (reference_place == nullptr) {
       for (std::int32_t k = model.bending.begin[v]; k < model.bending.begin[v + 1]; ++k)
         value -= 0.5 * model.bending.value[k] *
                  squared_distance(place + at, place + 3 * std::size_t(model.bending.column[k]));
       return 0.5 * model.scheme.energy * value;
     }
-    bending_row(model.bending, reference_place, v, of_reference);
-    for (int c = 0; c < 3; ++c) value += (place[at + c] - reference_place[at + c]) * (of_place[c] + of_reference[c]);
+    for (int c = 0; c < 3; ++c)
+      value += (place[at + c] - reference_place[at + c]) * (of_place[c] + reference_bent[at + c]);
     return 0.5 * model.scheme.energy * value;
   }
 
@@ -201,6 +206,7 @@ Change evaluate_against(const Model& model, OpenWorkspace& workspace, Iterate& a
   Positions* gradient = wanted == Wanted::gradient ? &at.gradient : nullptr;
   const Positions* reference_x = reference != nullptr ? &reference->x : nullptr;
   const bool bends = !model.bending.begin.empty();
+  if (bends) at.bent.resize(model.free, 3);
   if (bends && theta < 1 && reference != nullptr)
     workspace.reference_middle = theta * reference->x + (1 - theta) * workspace.start_copy;
   const auto place_of = [&](const Positions& x, const Positions& middle) {
@@ -214,7 +220,9 @@ Change evaluate_against(const Model& model, OpenWorkspace& workspace, Iterate& a
                           !model.handle_stiffness.empty(),
                           !model.damping.begin.empty(),
                           bends ? place_of(at.x, workspace.middle) : nullptr,
-                          bends && reference != nullptr ? place_of(reference->x, workspace.reference_middle) : nullptr};
+                          bends && reference != nullptr ? place_of(reference->x, workspace.reference_middle) : nullptr,
+                          bends ? at.bent.data() : nullptr,
+                          bends && reference != nullptr ? reference->bent.data() : nullptr};
   add_vertices(model, workspace, terms, gradient, change);
   if (workspace.air.act()) {
     const AirChange air = workspace.air.add(model, workspace.threads, at.x, reference_x, workspace.direction, gradient);
