@@ -8,10 +8,21 @@
 
 namespace supple {
 
+namespace {
+
+// Tells whether a cloth is drawn with yarns where the scene does not say. An elastic sheet has none. Those of a surface
+// that goes round would break where the flat coordinates along which they run change their axis.
+bool shows_yarns(const BodyDef& body) {
+  const bool is_woven = !body.cloth->fabric || std::holds_alternative<Woven>(body.cloth->fabric->fabric.membrane);
+  return is_woven && body.cloth->surface.empty();
+}
+
+}  // namespace
+
 std::optional<ClothLook> cloth_look(const BodyDef& body, const Positions& rest) {
   if (!body.cloth) return std::nullopt;
   const double size = bounds_of(rest).diagonal();
-  return ClothLook{body.back_color, body.yarn.value_or(size / 700), size / 130};
+  return ClothLook{body.back_color, body.yarn.value_or(shows_yarns(body) ? size / 700 : 0), size / 130};
 }
 
 double gloss_of(const BodyDef& body) { return body.gloss.value_or(body.cloth ? 0.08 : DrawMesh{}.gloss); }

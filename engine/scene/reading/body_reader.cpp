@@ -211,7 +211,8 @@ void read_cloth_look(const ConfigTable& table, BodyDef& body) {
   body.back_color = table.color_if_given(
       {"back_color", "sRGB", "of the back of cloth; a darker and paler tone of the front's where there is none"});
   body.yarn = table.number_if_given(
-      {"yarn", "m", "from one yarn of cloth to the next; a 700th of its diagonal; 0: none are seen"},
+      {"yarn", "m",
+       "from one yarn of cloth to the next; a 700th of its diagonal, of surfaces and elastic sheets 0: none are seen"},
       Range::at_least(0));
   for (const char* key : {"back_color", "yarn"}) {
     if (table.has(key) && !body.cloth) table.complain(key, fmt::format("{}: of cloth; this body is none", key));
