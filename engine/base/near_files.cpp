@@ -23,7 +23,10 @@ std::filesystem::path near_file(const std::filesystem::path& missing,
        !error && entry != end && seen < most_entries; entry.increment(error), ++seen) {
     if (fits(entry->path())) shown.push_back(folder / entry->path().filename());
   }
-  std::sort(shown.begin() + std::ptrdiff_t(names.size()), shown.end());
+  const auto files = shown.begin() + std::ptrdiff_t(names.size());
+  std::sort(files, shown.end());
+  // Who names a folder means a file there rather than one of the names.
+  if (!folder.empty()) std::rotate(shown.begin(), files, shown.end());
   std::vector<std::string> words;
   for (const std::filesystem::path& one : shown) words.push_back(one.stem().string());
   const std::string nearest = nearest_word(path.stem().string(), words);
