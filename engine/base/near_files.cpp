@@ -25,7 +25,7 @@ std::filesystem::path near_file(const std::filesystem::path& missing,
   }
   const auto files = shown.begin() + std::ptrdiff_t(names.size());
   std::sort(files, shown.end());
-  // Who names a folder means a file there rather than one of the names.
+  // A path with a folder is more likely to mean a file in that folder than one of the names, so its files come first.
   if (!folder.empty()) std::rotate(shown.begin(), files, shown.end());
   std::vector<std::string> words;
   for (const std::filesystem::path& one : shown) words.push_back(one.stem().string());

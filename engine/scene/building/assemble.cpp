@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 #include "base/text.h"
 #include "scene/building/overlaps.h"
+#include "scene/building/selected_vertices.h"
 #include "scene/building/unplaced_body.h"
+#include "scene/building/weaving.h"
 #include "scene/definition/rotation.h"
 #include "scene/reading/body_pieces.h"
 #include "sim/air/closed_surface.h"
@@ -37,90 +38,6 @@ void apply(const Eigen::Affine3d& place, Positions& points) {
 const Positions& points_to_place(const Body& body) {
   const auto& read = body.def.read_surface;
   return read && read->pieces.size() > 1 ? read->whole : body.unplaced;
-}
-
-std::vector<std::int32_t> numbered_vertices(const Selection& s, const TetMesh& mesh) {
-  std::vector<std::int32_t> result;
-  for (const int number : s.vertices) {
-    if (number <= mesh.rest.rows()) result.push_back(number - 1);
-  }
-  return result;
-}
-
-std::vector<std::int32_t> vertices_of_region(const Selection& s, const Body& body) {
-  const TetMesh& mesh = body.description.mesh;
-  const auto tag = std::find(body.regions.begin(), body.regions.end(), s.region) - body.regions.begin();
-  std::vector<std::int32_t> result;
-  for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
-    if (mesh.regions[e] != tag) continue;
-    for (int k = 0; k < 4; ++k) result.push_back(mesh.tets(e, k));
-  }
-  return result;
-}
-
-std::vector<std::int32_t> nearest_vertices(const Selection& s, const Bounds& box, const Positions& points) {
-  std::vector<std::int32_t> result;
-  for (const Vec3& relative : s.points) {
-    const Vec3 at = box.lower + relative.cwiseProduct(box.extent());
-    Eigen::Index nearest = 0;
-    (points.rowwise() - at.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
-    result.push_back(static_cast<std::int32_t>(nearest));
-  }
-  return result;
-}
-
-// Returns the vertices in a box, ball or half space.
-std::vector<std::int32_t> vertices_within(const Selection& s, const Bounds& box, const Positions& points) {
-  const Vec3 extent = box.extent().cwiseMax(1e-300);
-  std::vector<std::int32_t> result;
-  for (std::int32_t v = 0; v < points.rows(); ++v) {
-    const Vec3 point = points.row(v);
-    const Vec3 relative = (point - box.lower).cwiseQuotient(extent);
-    const Vec3 away = point - (box.lower + s.center.cwiseProduct(extent));
-    bool in = false;
-    // The box has a tolerance of a millionth, because a box that ends at 1 is meant to include vertices at 1.
-    if (s.kind == Selection::Kind::box)
-      in = (relative.array() >= s.lower.array() - 1e-6).all() && (relative.array() <= s.upper.array() + 1e-6).all();
-    if (s.kind == Selection::Kind::sphere) in = away.norm() <= s.radius * box.extent().maxCoeff();
-    if (s.kind == Selection::Kind::plane) in = away.dot(s.normal.normalized()) >= -1e-6 * box.extent().maxCoeff();
-    if (in) result.push_back(v);
-  }
-  return result;
-}
-
-// Tells which vertices of a cloth are on its open border.
-std::vector<char> on_border(const Triangles& triangles, Eigen::Index vertices) {
-  std::map<VertexPair, int> count;
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      VertexPair edge{triangles(t, k), triangles(t, (k + 1) % 3)};
-      std::sort(edge.begin(), edge.end());
-      ++count[edge];
-    }
-  }
-  std::vector<char> border(std::size_t(vertices), 0);
-  for (const auto& [edge, triangles_there] : count) {
-    if (triangles_there == 1) border[std::size_t(edge[0])] = border[std::size_t(edge[1])] = 1;
-  }
-  return border;
-}
-
-// Coordinates are relative to the rest box before the body is rotated, so that a selection means the same part in every
-// orientation of the body.
-std::vector<std::int32_t> selected(const Selection& s, const Body& body) {
-  const TetMesh& mesh = body.description.mesh;
-  const Bounds box = bounds_of(body.unplaced);
-  std::vector<std::int32_t> result = s.kind == Selection::Kind::vertices  ? numbered_vertices(s, mesh)
-                                     : s.kind == Selection::Kind::region  ? vertices_of_region(s, body)
-                                     : s.kind == Selection::Kind::nearest ? nearest_vertices(s, box, body.unplaced)
-                                                                          : vertices_within(s, box, body.unplaced);
-  std::sort(result.begin(), result.end());
-  result.erase(std::unique(result.begin(), result.end()), result.end());
-  if (s.border) {
-    const std::vector<char> border = on_border(body.cloth.surface.triangles, mesh.rest.rows());
-    std::erase_if(result, [&](std::int32_t v) { return border[std::size_t(v)] == 0; });
-  }
-  return result;
 }
 
 Problem at(const FilePlace& place, std::string message) { return {place, std::move(message)}; }
@@ -186,63 +103,6 @@ void note_drag(const SceneDef& scene, Body& body) {
   body.notes.push_back(fmt::format("body '{}' has a drag, but the scene has no [wind] and so no air", body.def.name));
 }
 
-// Makes the springs of cloth, with their rest lengths in the world.
-void weave_springs(Body& body) {
-  const ClothDef& def = *body.def.cloth;
-  BodyDescription& description = body.description;
-  description.springs.clear();
-  const auto join = [&](const std::vector<VertexPair>& pairs, double stiffness) {
-    if (stiffness <= 0) return;
-    for (const auto& [from, to] : pairs) {
-      const double length = (description.mesh.rest.row(from) - description.mesh.rest.row(to)).norm();
-      description.springs.push_back({from, to, length, stiffness});
-    }
-  };
-  join(body.cloth.edges, def.stretch);
-  join(body.cloth.diagonals, def.shear);
-  join(body.cloth.bends, def.bend);
-}
-
-// Lays each triangle flat as it stands in the world. The warp is the grain as the triangle's plane has it; where the
-// plane is across the grain, it is the direction of its first edge.
-void weave_triangles(Body& body) {
-  const ClothDef& def = *body.def.cloth;
-  BodyDescription& description = body.description;
-  const Vec3 grain = (body.placement.linear() * def.grain).normalized();
-  description.fabric = def.fabric->fabric;
-  description.cloth.clear();
-  const Triangles& triangles = body.cloth.surface.triangles;
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    const auto corner = [&](int k) -> Vec3 { return description.mesh.rest.row(triangles(t, k)); };
-    const Vec3 first = corner(1) - corner(0), second = corner(2) - corner(0);
-    const Vec3 normal = first.cross(second).normalized();
-    Vec3 warp = grain - normal.dot(grain) * normal;
-    if (warp.norm() < 1e-3) warp = first;
-    warp.normalize();
-    const Vec3 weft = normal.cross(warp);
-    description.cloth.push_back({{triangles(t, 0), triangles(t, 1), triangles(t, 2)},
-                                 {first.dot(warp), second.dot(warp), first.dot(weft), second.dot(weft)}});
-  }
-}
-
-// Makes the elements of cloth, and its mass at each vertex.
-void weave(Body& body) {
-  const BodyDef& def = body.def;
-  BodyDescription& description = body.description;
-  const ClothMesh& cloth = body.cloth;
-  description.surface = cloth.surface.triangles;
-  if (def.cloth->fabric) {
-    weave_triangles(body);
-  } else {
-    weave_springs(body);
-  }
-  description.point_mass = vertex_areas({description.mesh.rest, cloth.surface.triangles});
-  double area = 0;
-  for (const double share : description.point_mass) area += share;
-  const double density = def.total_mass ? *def.total_mass / area : def.body_density();
-  for (double& mass : description.point_mass) mass *= density;
-}
-
 // Says why a handle selects no vertex, after "selects no vertex".
 std::string empty_reason(const Selection& select) {
   if (select.kind == Selection::Kind::region) return fmt::format(": there is no region '{}'", select.region);
@@ -265,7 +125,7 @@ std::vector<char> taken_before(const Body& body, const HandleDef& next) {
 
 void add_handle(Body& body, const HandleDef& def, std::vector<Problem>& problems) {
   const TetMesh& mesh = body.description.mesh;
-  Handle handle{def.name, selected(def.select, body), def.stiffness, !def.grabs || def.holds_at(0)};
+  Handle handle{def.name, selected_vertices(def.select, body), def.stiffness, !def.grabs || def.holds_at(0)};
   const auto beyond = std::ranges::find_if(def.select.vertices, [&](int v) { return v > mesh.rest.rows(); });
   if (beyond != def.select.vertices.end()) {
     problems.push_back(at(def.select.place, fmt::format("handle '{}': body '{}' has no vertex {}; it has {}", def.name,

@@ -49,7 +49,7 @@ class AirForces {
   AirChange add(const Model& model, Threads* threads, const Positions& x, const Positions* reference,
                 const Positions& direction, Positions* gradient);
 
-  // What the air adds at one free vertex, for methods that move one after the other.
+  // Holds what the air adds at one free vertex, for methods that move one vertex after the other.
   struct VertexShare {
     Vec3 slope;        // of g, by the vertex' position; with the gas' pressure of the last add() [N]
     double stiffness;  // a bound of the drag's second derivative [N/m]

@@ -1,0 +1,64 @@
+#include "scene/building/weaving.h"
+
+namespace supple {
+namespace {
+
+// Makes the springs of cloth, with their rest lengths in the world.
+void weave_springs(Body& body) {
+  const ClothDef& def = *body.def.cloth;
+  BodyDescription& description = body.description;
+  description.springs.clear();
+  const auto join = [&](const std::vector<VertexPair>& pairs, double stiffness) {
+    if (stiffness <= 0) return;
+    for (const auto& [from, to] : pairs) {
+      const double length = (description.mesh.rest.row(from) - description.mesh.rest.row(to)).norm();
+      description.springs.push_back({from, to, length, stiffness});
+    }
+  };
+  join(body.cloth.edges, def.stretch);
+  join(body.cloth.diagonals, def.shear);
+  join(body.cloth.bends, def.bend);
+}
+
+// Lays each triangle flat as it stands in the world. The warp is the grain as the triangle's plane has it; where the
+// plane is across the grain, it is the direction of its first edge.
+void weave_triangles(Body& body) {
+  const ClothDef& def = *body.def.cloth;
+  BodyDescription& description = body.description;
+  const Vec3 grain = (body.placement.linear() * def.grain).normalized();
+  description.fabric = def.fabric->fabric;
+  description.cloth.clear();
+  const Triangles& triangles = body.cloth.surface.triangles;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    const auto corner = [&](int k) -> Vec3 { return description.mesh.rest.row(triangles(t, k)); };
+    const Vec3 first = corner(1) - corner(0), second = corner(2) - corner(0);
+    const Vec3 normal = first.cross(second).normalized();
+    Vec3 warp = grain - normal.dot(grain) * normal;
+    if (warp.norm() < 1e-3) warp = first;
+    warp.normalize();
+    const Vec3 weft = normal.cross(warp);
+    description.cloth.push_back({{triangles(t, 0), triangles(t, 1), triangles(t, 2)},
+                                 {first.dot(warp), second.dot(warp), first.dot(weft), second.dot(weft)}});
+  }
+}
+
+}  // namespace
+
+void weave(Body& body) {
+  const BodyDef& def = body.def;
+  BodyDescription& description = body.description;
+  const ClothMesh& cloth = body.cloth;
+  description.surface = cloth.surface.triangles;
+  if (def.cloth->fabric) {
+    weave_triangles(body);
+  } else {
+    weave_springs(body);
+  }
+  description.point_mass = vertex_areas({description.mesh.rest, cloth.surface.triangles});
+  double area = 0;
+  for (const double share : description.point_mass) area += share;
+  const double density = def.total_mass ? *def.total_mass / area : def.body_density();
+  for (double& mass : description.point_mass) mass *= density;
+}
+
+}  // namespace supple
