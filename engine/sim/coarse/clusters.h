@@ -29,10 +29,10 @@ struct Clusters {
 };
 
 // Returns how many clusters each part of a model should have: enough that every limb of a body can turn, and so few
-// that their matrix costs a small share of a step. A part without tetrahedra has none.
+// that their matrix costs a small share of a step. Cloth of springs has none.
 std::vector<int> wanted_clusters(const Model& model);
 
-// Spreads clusters over the tetrahedra of a model. counts: the largest number of clusters of each part.
+// Spreads clusters over the tetrahedra and triangles of a model. counts: the largest number of clusters of each part.
 Clusters make_clusters(const Model& model, const std::vector<int>& counts);
 
 }  // namespace supple

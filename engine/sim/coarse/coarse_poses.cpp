@@ -96,6 +96,10 @@ bool CoarseSystem::turn_to(const Positions& x) {
   for (const Group& group : groups_) {
     if (blocks_[group.part].is_made) add_group(group, x);
   }
+  for (int part = 0; part < parts(); ++part) {
+    if (columns_of(part) > 0 && sheets_.is_sheet(part))
+      sheets_.make_matrices(part, &centers_[clusters_.first[part]], x, blocks_[part].constant, blocks_[part].hessian);
+  }
   return std::any_of(blocks_.begin(), blocks_.end(), [](const Block& block) { return block.is_made; });
 }
 
@@ -203,7 +207,7 @@ const std::vector<Vec3>& CoarseSystem::prolong(const Model& model, const Positio
 }
 
 // A group whose mean deformation gradient F changes by D turns by the angle that minimises |D - [theta]x F|.
-void CoarseSystem::find_turns(const Positions& x, const Positions& motion, std::vector<Turn>& turns) const {
+void CoarseSystem::find_turns(const Positions& x, const Positions& motion, std::vector<ClusterTurn>& turns) const {
   turns.assign(clusters_.count(), {});
   for (const Group& group : groups_) {
     Mat3 gradient = Mat3::Zero(), change = Mat3::Zero();
@@ -217,17 +221,13 @@ void CoarseSystem::find_turns(const Positions& x, const Positions& motion, std::
     const Mat3 products = gradient * gradient.transpose();
     const Mat3 inertia = products.trace() * Mat3::Identity() - products;
     const Mat3 rate = change * gradient.inverse();
-    Turn& turn = turns[group.cluster];
-    turn.angle += group.volume * inertia.ldlt().solve(torque);
-    turn.strain += group.volume * 0.5 * (rate + rate.transpose());
-    turn.volume += group.volume;
+    const double share = group.volume / volume_[group.cluster];
+    ClusterTurn& turn = turns[group.cluster];
+    turn.angle += share * inertia.ldlt().solve(torque);
+    turn.strain += share * 0.5 * (rate + rate.transpose());
     turn.stiffness += group.volume * group.stiffness;
   }
-  for (Turn& turn : turns) {
-    if (turn.volume <= 0) continue;
-    turn.angle /= turn.volume;
-    turn.strain /= turn.volume;
-  }
+  for (const SheetPatch& patch : patches_) turns[patch.cluster] = turn_of(patch, x, motion);
 }
 
 double CoarseSystem::most_stretched(const Model& model, const Positions& motion) const {

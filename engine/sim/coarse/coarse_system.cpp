@@ -52,6 +52,8 @@ void CoarseSystem::make(const Model& model) {
   if (structure_ != model.structure) make_structure(model);
   if (model_ == model.id) return;
   for (Group& group : groups_) set_values(model, group);
+  sheets_.set_values(model);
+  patches_ = make_patches(model, clusters_);
   find_stretch_bounds(model);
   model_ = model.id;
 }
@@ -66,6 +68,16 @@ void CoarseSystem::find_stretch_bounds(const Model& model) {
     double stiffness = 0;
   };
   std::vector<Moments> moments(clusters_.count());
+  for (const SheetPatch& patch : patches_) {
+    Moments& of = moments[patch.cluster];
+    of.stiffness += patch.stiffness;
+    for (std::size_t i = 0; i < patch.vertex.size(); ++i) {
+      const Vec3 at = model.rest.row(patch.vertex[i]).transpose();
+      of.mass += patch.mass[i];
+      of.first += patch.mass[i] * at;
+      of.second += patch.mass[i] * at * at.transpose();
+    }
+  }
   for (const Group& group : groups_) {
     Moments& of = moments[group.cluster];
     of.stiffness += group.stiffness * group.volume;
@@ -94,14 +106,12 @@ void CoarseSystem::make_structure(const Model& model) {
   clusters_ = {};
   model_ = 0;
   structure_ = model.structure;
-  const bool solid = std::any_of(model.chunks.begin(), model.chunks.end(),
-                                 [](const Model::ChunkRange& chunk) { return chunk.kind == ElementKind::tetrahedron; });
-  if (!solid) return;
   clusters_ = make_clusters(model, wanted_clusters(model));
   for (int part = 0; part < parts(); ++part)
     part_of_.insert(part_of_.end(), std::size_t(columns_of(part) / motions_of_cluster), part);
   make_groups(model);
   add_gradients(model);
+  sheets_.make_structure(model, clusters_);
   make_pieces(model);
 }
 
@@ -144,6 +154,8 @@ void CoarseSystem::make_groups(const Model& model) {
       share += term.weight / 4;
     }
   });
+  volume_.assign(std::size_t(clusters_.count()), 0.0);
+  for (const Group& group : groups_) volume_[group.cluster] += group.volume;
   std::vector<char> taken(model.free, 0);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     Group& group = groups_[g];

@@ -7,6 +7,7 @@
 // w_c e x (x - p_c). Elements are kept in groups, one for each cluster and region. The stiffness of a group is computed
 // at rest, about the group's own centre and in its own frame, in which it does not change when the group turns; a rigid
 // motion of all clusters of a group costs no energy there, whatever its shape has become. Held vertices do not move.
+// Cloth is summed up where it lies (sheet_stiffness.h).
 //
 // Clusters and groups belong to one part of the model each. Columns of Z come part by part, and both matrices are kept
 // as one block for each part, because the entries between parts are 0.
@@ -17,6 +18,8 @@
 
 #include "base/threads.h"
 #include "sim/coarse/clusters.h"
+#include "sim/coarse/sheet_patches.h"
+#include "sim/coarse/sheet_stiffness.h"
 #include "sim/model/model.h"
 
 namespace supple {
@@ -34,10 +37,10 @@ class CoarseSystem {
   // whether any part has them.
   bool turn_to(const Positions& x);
 
-  // Returns the number of parts; 0 for a model without tetrahedra.
+  // Returns the number of parts.
   int parts() const { return static_cast<int>(clusters_.first.size()) - 1; }
   int columns() const { return motions_of_cluster * clusters_.count(); }  // r
-  // The columns of a part are first_column(part) .. first_column(part + 1) - 1; a part without tetrahedra has none.
+  // The columns of a part are first_column(part) .. first_column(part + 1) - 1; cloth of springs has none.
   int first_column(int part) const { return motions_of_cluster * clusters_.first[part]; }
   int columns_of(int part) const { return first_column(part + 1) - first_column(part); }
   // Tells whether the last turn_to has made matrices for a part.
@@ -58,15 +61,8 @@ class CoarseSystem {
   // Adds Z^T of a force on one free vertex at x to r numbers.
   void restrict_one(std::int32_t vertex, const Vec3& force, const Positions& x, double* sums) const;
 
-  // Describes how a cluster moves, to first order in the motion.
-  struct Turn {
-    Vec3 angle = Vec3::Zero();   // the angle by which the cluster turns [rad]
-    Mat3 strain = Mat3::Zero();  // the symmetric rest of the gradient of the motion
-    double volume = 0;           // [m^3]
-    double stiffness = 0;        // the integral of k over the cluster [J]
-  };
   // Finds the turns of the clusters in a motion (n x 3, or of the free vertices alone) from x.
-  void find_turns(const Positions& x, const Positions& motion, std::vector<Turn>& turns) const;
+  void find_turns(const Positions& x, const Positions& motion, std::vector<ClusterTurn>& turns) const;
   // Returns the part of the model that a cluster belongs to.
   int part_of(std::size_t cluster) const { return part_of_[cluster]; }
   // Returns a bound of the energy that a motion of the free vertices takes by stretching what turns (turning.h) [J].
@@ -123,8 +119,11 @@ class CoarseSystem {
   std::uint64_t structure_ = 0, model_ = 0;
   Clusters clusters_;
   std::vector<Group> groups_;
+  std::vector<SheetPatch> patches_;
+  SheetStiffness sheets_;
   std::vector<std::int32_t> group_of_;  // by tetrahedron, in the order of lanes; empty once the groups are made
   std::vector<int> part_of_;            // by cluster
+  std::vector<double> volume_;          // of the groups of each cluster [m^3]
   std::vector<Vec3> centers_;           // p_c [m]
   std::vector<Block> blocks_;           // by part
   std::vector<double> stretch_bounds_;  // by part: most_stretched() over (sum of m |d|^2)^2 [1/(kg^2 m^2 s^2)]

@@ -18,4 +18,19 @@ RestModuli rest_moduli(const Material& material) {
       material);
 }
 
+Mat3 plane_moduli(const Membrane& membrane) {
+  return std::visit(
+      [](const auto& sheet) {
+        Mat3 moduli = Mat3::Zero();
+        if constexpr (std::decay_t<decltype(sheet)>::isotropic) {
+          moduli.diagonal() << 2 * sheet.mu + sheet.lambda, 2 * sheet.mu + sheet.lambda, sheet.mu;
+          moduli(0, 1) = moduli(1, 0) = sheet.lambda;
+        } else {
+          moduli.diagonal() << sheet.warp, sheet.weft, sheet.shear;
+        }
+        return moduli;
+      },
+      membrane);
+}
+
 }  // namespace supple

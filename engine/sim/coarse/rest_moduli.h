@@ -1,7 +1,9 @@
 // Finds the moduli of linear elasticity that a material has at rest.
 #pragma once
 
+#include "base/types.h"
 #include "sim/materials/material.h"
+#include "sim/materials/membrane.h"
 
 namespace supple {
 
@@ -11,5 +13,9 @@ struct RestModuli {
 
 // Returns the moduli of a material. Both are 0 where it has no stiffness at rest, like the polynomial.
 RestModuli rest_moduli(const Material& material);
+
+// Returns the symmetric matrix of a membrane that is taut: from the strains of warp and weft and twice their shear
+// strain to the stresses [N/m].
+Mat3 plane_moduli(const Membrane& membrane);
 
 }  // namespace supple

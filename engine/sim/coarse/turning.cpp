@@ -27,7 +27,9 @@ void Turning::take_velocity(const CoarseSystem& system, const Positions& x, cons
     if (!(sine > least_angle)) continue;
     const Mat3 k = axis_of(turns_[c].angle), k2 = k * k;
     const double most = 1 - std::sqrt(1 - sine * sine);
-    const double widened = std::clamp(-0.5 * turns_[c].strain.cwiseProduct(k2).sum(), 0.0, most);
+    const Vec3& normal = turns_[c].normal;
+    const double directions = -k2.trace() + normal.dot(k2 * normal);  // across the axis, in which the strain is known
+    const double widened = std::clamp(-turns_[c].strain.cwiseProduct(k2).sum() / directions, 0.0, most);
     const double angle = std::atan2(sine, 1 + widened);
     by_cluster_[c] = (std::sin(angle) - turns_[c].angle.norm()) * k + (1 - std::cos(angle) + widened) * k2;
     energy_[system.part_of(c)] += 0.5 * turns_[c].stiffness * by_cluster_[c].squaredNorm();

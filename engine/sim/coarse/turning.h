@@ -38,7 +38,7 @@ class Turning {
                Positions& correction);
 
  private:
-  std::vector<CoarseSystem::Turn> turns_;
+  std::vector<ClusterTurn> turns_;
   std::vector<Mat3> by_cluster_, by_vertex_;  // C
   std::vector<double> energy_;                // by part of the model; empty without clusters
   Positions right_;
