@@ -64,6 +64,7 @@ struct ClothLook {
 
 // Describes a surface whose vertices move while its other attributes stay.
 struct DrawMesh {
+  std::string name;                             // of its mask; it is in none when empty
   std::string label;                            // caption; none when empty
   std::vector<std::uint32_t> triangles;         // vertex indices, three a triangle, anticlockwise from outside
   std::vector<std::uint32_t> shadow_triangles;  // the same, those that cast its shadow; all of them when empty
