@@ -95,7 +95,12 @@ enum class Backdrop {
   ground,       // a ground with shadows, which fades into the background
   plain,        // the colour of the background alone
   transparent,  // nothing: pictures have coverage
+  shadows,      // nothing but the ground's shadows, which are black with coverage
 };
+
+constexpr bool has_coverage(Backdrop backdrop) {
+  return backdrop == Backdrop::transparent || backdrop == Backdrop::shadows;
+}
 
 // Holds what a replay may change of a stage: its colours [sRGB] and the exposure.
 struct StageColors {
