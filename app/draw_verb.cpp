@@ -18,6 +18,7 @@
 #include "base/text.h"
 #include "base/timing.h"
 #include "film/pictures/film_stills.h"
+#include "film/plan/film_coding.h"
 #include "film/progress.h"
 #include "film/redraw/redraw.h"
 #include "film/redraw/skin_files.h"
@@ -34,6 +35,7 @@ struct DrawCommand {
   std::vector<std::string> runs;
   std::string run, scene, out, still;
   std::string field, range, reference;  // short forms of settings
+  std::vector<std::string> passes;      // the same
   std::optional<std::size_t> frame, index;
   std::optional<double> rate;
   int of = 1, jobs = 1;
@@ -65,6 +67,10 @@ void make_sheet(const DrawCommand& command, const LoadedDrawing& drawing) {
   if (!command.quiet) say(stdout, fmt::format("  sheet    {}\n", file.string()));
 }
 
+FilmCoding coding_of(const DrawCommand& command, const LoadedDrawing& drawing) {
+  return coding_for(command.coding, drawing.film.world.script().scene());
+}
+
 // Ends the film and prints the result. Returns the exit status.
 int finish_film(const DrawCommand& command, const LoadedDrawing& drawing, std::optional<VideoEncoder>& video,
                 int pictures, double seconds) {
@@ -82,19 +88,20 @@ int finish_film(const DrawCommand& command, const LoadedDrawing& drawing, std::o
   if (command.quiet) return 0;
   say(stdout, fmt::format("  {} pictures in {}\n", pictures, duration_text(seconds)));
   if (written)
-    say(stdout, fmt::format("  film     {}\n", (command.folder() / film_file(command.coding.format)).string()));
+    say(stdout,
+        fmt::format("  film     {}\n", (command.folder() / film_file(coding_of(command, drawing).chosen())).string()));
   return 0;
 }
 
 // Starts the film, unless the pictures are all that is asked for.
 void begin_film(const DrawCommand& command, const LoadedDrawing& drawing, std::optional<VideoEncoder>& video) {
   const SceneDef& scene = drawing.film.world.script().scene();
-  const std::string file = film_file(command.coding.format);
+  const FilmCoding coding = coding_of(command, drawing);
+  const std::string file = film_file(coding.chosen());
   if (file.empty()) return;
-  const bool transparent = scene.look.backdrop == BackdropKind::transparent;
-  for (const std::string& warning : coding_warnings(command.coding, drawing.rate, transparent))
+  for (const std::string& warning : coding_warnings(coding, drawing.rate))
     say(stderr, fmt::format("warning: {}\n", warning));
-  video.emplace(command.folder() / file, scene.output.width, scene.output.height, drawing.rate, command.coding);
+  video.emplace(command.folder() / file, scene.output.width, scene.output.height, drawing.rate, coding);
 }
 
 // Makes the film from pictures that other processes have drawn. watch: started with the work.
@@ -215,6 +222,7 @@ void add_short_forms(DrawCommand& command) {
   if (!command.reference.empty()) settings.push_back("field.reference=" + quoted(command.reference));
   std::vector<std::string>& all = command.plan.settings;
   all.insert(all.begin(), settings.begin(), settings.end());
+  ask_for_passes(command.passes, all);
 }
 
 // Draws one frame of several runs side by side, by way of a folder beside the picture, which does not stay.
@@ -261,6 +269,8 @@ int draw(DrawCommand command) {
   command.plan.quiet = command.quiet;
   if (command.frame && !command.out.empty())
     throw InputError("--out", "is the folder of a film; the picture of one frame goes into the file of --still");
+  if (!command.passes.empty() && (command.frame || command.skins))
+    throw InputError("--passes", "stand beside the pictures of a film, not beside the picture of one frame or skins");
   if (command.runs.size() > 1) return draw_several(command);
   if (command.index && *command.index >= static_cast<std::size_t>(command.of))
     throw InputError(fmt::format("--index {}", *command.index),
@@ -268,6 +278,7 @@ int draw(DrawCommand command) {
   LoadedDrawing drawing = load_drawing(command.plan);
   if (command.skins) return write_skin_files(command, drawing);
   if (command.frame || !command.still.empty()) return draw_one(command, drawing);
+  coding_of(command, drawing);  // is refused before the folder is changed
   open_drawing(command.folder(), drawing, command.index || command.merge);
   catch_interrupts();
   if (command.merge) return merge_parts(command, drawing);
@@ -296,6 +307,7 @@ void add_options(Verb& verb, DrawCommand& command) {
   verb.option("--last", plan.last, "last frame [the run's]").between(0, 1000000);
   verb.option("--every", plan.every, "draw every Nth frame").between(1, 100000).shows_default();
   add_coding_options(verb, command.coding);
+  add_passes_option(verb, command.passes);
   verb.flag("--sheet", command.sheet, "also sheet.png, on which a dozen of the pictures stand");
   verb.option("--rate", command.rate, "frames a second of the film [as fast as it happened]").between(0.01, 1000.0);
   const Option frame = verb.option("--frame", command.frame, "draw this frame alone, into the file of --still")

@@ -1,6 +1,6 @@
 #include "app/film_run.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "base/timing.h"
 #include "film/pictures/picture_words.h"
+#include "film/plan/film_coding.h"
 #include "film/plan/shipped_files.h"
 #include "film/rough_motion.h"
 #include "output/files/json_text.h"
@@ -60,8 +61,7 @@ void say_place(const FilmPlan& plan, const RunPlace& place) {
 // Tells what the film's format cannot hold, which concerns what the film shows.
 void say_coding(const FilmPlan& plan, const SceneDef& scene) {
   if (!plan.wants_video()) return;
-  const bool transparent = scene.look.backdrop == BackdropKind::transparent;
-  for (const std::string& warning : coding_warnings(plan.coding, scene.fps / plan.pictures_every(), transparent))
+  for (const std::string& warning : coding_warnings(coding_for(plan.coding, scene), scene.fps / plan.pictures_every()))
     say(stderr, fmt::format("warning: {}\n", warning));
 }
 
@@ -243,12 +243,26 @@ void add_cache_option(Verb& verb, bool& cache) {
 void add_coding_options(Verb& verb, FilmCoding& coding) {
   verb.option(
           "--format", [&coding](const std::string& word) { coding.format = *value_named<FilmFormat>(word); },
-          "of the film [mp4]: " + word_list(all_names<FilmFormat>()) + "; png makes pictures alone")
+          "of the film [mp4, and webm of a transparent one]: " + word_list(all_names<FilmFormat>()) +
+              "; png makes pictures alone")
       .one_of(all_names<FilmFormat>());
   verb.option(
           "--quality", [&coding](const std::string& word) { coding.quality = *value_named<FilmQuality>(word); },
           "of the film [good]: " + word_list(all_names<FilmQuality>()))
       .one_of(all_names<FilmQuality>());
+}
+
+void add_passes_option(Verb& verb, std::vector<std::string>& passes) {
+  verb.option("--passes", passes,
+              "pictures in numbers for compositors, such as depth,masks: " + word_list(all_names<PicturePass>()))
+      .separated_by(',')
+      .repeatable()
+      .one_of(all_names<PicturePass>());
+}
+
+void ask_for_passes(const std::vector<std::string>& passes, std::vector<std::string>& settings) {
+  if (!passes.empty())
+    settings.insert(settings.begin(), fmt::format("output.passes=[\"{}\"]", fmt::join(passes, "\", \"")));
 }
 
 void take_standard_input(FilmPlan& plan) {
@@ -271,6 +285,7 @@ void add_film(Verb& verb, const FilmArgument& argument, const std::vector<std::s
             "a first look: small pictures of every other frame, coarse meshes, into out/NAME-preview")
       .excludes({"--resume", "--checkpoint-every"});
   add_coding_options(verb, plan.coding);
+  add_passes_option(verb, command->passes);
   verb.flag(
       "--no-stills", [&plan] { plan.stills = false; }, "no poster.png and no sheet.png");
   verb.flag("--page", command->page, "also one HTML page of the run: index.html, as supple page makes it");
@@ -280,6 +295,7 @@ void add_film(Verb& verb, const FilmArgument& argument, const std::vector<std::s
       .excludes({"--no-video", "--no-images", "--checkpoint-every"});
   verb.runs([command, words] {
     take_standard_input(command->plan);
+    ask_for_passes(command->passes, command->plan.settings);
     return run_film(*command, words);
   });
 }

@@ -14,9 +14,10 @@ namespace supple {
 // Describes a film as the command line asks for it.
 struct FilmCommand {
   FilmPlan plan;
-  bool json = false;  // the result as one line of JSON
-  bool table = true;  // the table of times at the end
-  bool page = false;  // a page of the run (output/pages/run_page.h)
+  std::vector<std::string> passes = {};  // names of passes, over the scene's
+  bool json = false;                // the result as one line of JSON
+  bool table = true;                // the table of times at the end
+  bool page = false;                // a page of the run (output/pages/run_page.h)
 };
 
 // Adds the options that every run of a scene has. --resume is not among them, because it is for single films only.
@@ -28,6 +29,10 @@ void add_cache_option(Verb& verb, bool& cache);
 
 // Adds the options of a film's file.
 void add_coding_options(Verb& verb, FilmCoding& coding);
+
+// Adds the option of the film's passes, and puts them before settings, which may differ.
+void add_passes_option(Verb& verb, std::vector<std::string>& passes);
+void ask_for_passes(const std::vector<std::string>& passes, std::vector<std::string>& settings);
 
 // Prints warnings of the scene, and the notes from reading meshes.
 void say_remarks(const FilmPlan& plan, const LoadedFilm& film);

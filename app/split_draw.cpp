@@ -71,14 +71,14 @@ void draw_panel(const SplitCommand& command, const std::string& run, int columns
 }
 
 int make_film_of(const SplitCommand& command, const Drawn& drawn) {
-  const std::string file = film_file(command.coding.format);
+  const std::string file = film_file(command.coding.chosen());
   std::optional<VideoEncoder> video;
   for (std::size_t picture = 0; picture < drawn.frames.size() && !interrupted(); ++picture) {
     const auto number = static_cast<int>(picture);
     const Image image = split_picture(drawn.screen, number, drawn.frames[picture]);
     write_png(picture_file(command.folder / "frames", number), image.width, image.height, image.rgb);
     if (!video && !file.empty()) {
-      for (const std::string& warning : coding_warnings(command.coding, drawn.rate, false))
+      for (const std::string& warning : coding_warnings(command.coding, drawn.rate))
         say(stderr, fmt::format("warning: {}\n", warning));
       video.emplace(command.folder / file, image.width, image.height, drawn.rate, command.coding);
     }

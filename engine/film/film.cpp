@@ -12,6 +12,7 @@
 #include "film/frame_loop.h"
 #include "film/pictures/film_stills.h"
 #include "film/pictures/reference_run.h"
+#include "film/plan/film_coding.h"
 #include "film/plan/film_solvers.h"
 #include "film/plan/shipped_files.h"
 #include "film/progress.h"
@@ -35,8 +36,9 @@ void check_folder(const FilmPlan& plan, const LoadedFilm& film, const FilmStart&
   const SceneDef& scene = film.world.script().scene();
   check_save_states(plan.save_states, scene, start.place.path, start.kept_frames());
   check_rows_and_motion(start.place.path, film.world.bodies(), scene, start.kept_frames());
-  if (plan.pictures == FilmPictures::all && !plan.film_only)
-    check_pictures(start.place.path / "frames", start.kept_frames());
+  if (plan.pictures != FilmPictures::all || plan.film_only) return;
+  check_pictures(start.place.path / "frames", start.kept_frames());
+  check_kept_passes(start.place.path / "passes", scene, start.kept_frames());
 }
 
 void check_records(const FilmPlan& plan, const FilmStart& start) {
@@ -60,6 +62,8 @@ void check_pictures_asked(const FilmPlan& plan, const LoadedFilm& film) {
   if (plan.pictures != FilmPictures::none) check_references(scene, film.world.bodies(), scene.frames - 1);
   std::vector<Problem> later = known_after_film(scene);
   if (!later.empty() && plan.pictures != FilmPictures::none) throw InputError(std::move(later));
+  if (plan.wants_video()) coding_for(plan.coding, scene);
+  if (plan.pictures != FilmPictures::none) check_passes(scene);
   if (plan.film_only && plan.coding.format == FilmFormat::png)
     throw InputError("--film-only", "leaves a film, and --format png makes none");
   if (plan.film_only && !run_program({"ffmpeg", "-version"}))
@@ -139,8 +143,13 @@ bool make_frames(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const
     log.emplace(folder, start.checkpoint_every, start.identity, start.kept_frames(), plan.record);
     frames.emplace(plan, film, start, &folder, solvers, log->whole_rows());
     if (const Stage* stage = frames->stage()) {
-      const PictureTargets targets{folder.frames(), !plan.film_only, video, start.kept_frames()};
+      const std::vector<PicturePass>& passes = film.world.script().scene().output.passes;
+      const PictureTargets targets{folder.frames(),     !plan.film_only, video,
+                                   start.kept_frames(), folder.passes(), passes};
       frames->draw_on(pictures.emplace(*stage, plan.gl, shaders_folder(), targets));
+      // The last picture that is kept was made without the next one, or with none.
+      if (start.kept_frames() > 0 && pictures->want_next())
+        pictures->put_earlier(start.kept_frames() - 1, frames->present_list());
     }
     guide.emplace(film.world, *log, pictures ? &*pictures : nullptr, progress);
     result.setup_ms = setup.elapsed_ms();
@@ -160,8 +169,9 @@ bool make_frames(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const
 
 void begin_video(const FilmPlan& plan, const SceneDef& scene, const RunFolder& folder,
                  std::optional<VideoEncoder>& video) {
-  video.emplace(folder.path() / film_file(plan.coding.format), scene.output.width, scene.output.height,
-                scene.fps / plan.pictures_every(), plan.coding);
+  const FilmCoding coding = coding_for(plan.coding, scene);
+  video.emplace(folder.path() / film_file(coding.chosen()), scene.output.width, scene.output.height,
+                scene.fps / plan.pictures_every(), coding);
 }
 
 // Returns how many pictures the whole frames have.
@@ -195,7 +205,7 @@ void finish_video(const FilmPlan& plan, const SceneDef& scene, const RunFolder& 
   }
   const VideoResult end = video->finish();
   result.video_written = end.outcome == VideoOutcome::written;
-  if (result.video_written) result.video = folder.path() / film_file(plan.coding.format);
+  if (result.video_written) result.video = folder.path() / film_file(coding_for(plan.coding, scene).chosen());
   result.video_failed = end.outcome == VideoOutcome::failed || (plan.film_only && !result.video_written);
   result.encode_ms = end.cpu_ms / frames;
   if (result.video_written) return;

@@ -132,11 +132,13 @@ void FrameLoop::end_repeats() {
   for (const auto& body : recorders_) body->end_repeats();
 }
 
-bool FrameLoop::show_again() {
-  if (pictures_ == nullptr) return true;
+DrawList FrameLoop::present_list() {
   for (const auto& body : recorders_) body->note_motion();
-  const int frame = std::max(world_.frames() - 1, 0);
-  return pictures_->put(frame, list_of(frame, world_.frames() / world_.scene().fps, nullptr));
+  return list_of(std::max(world_.frames() - 1, 0), world_.frames() / world_.scene().fps, nullptr);
+}
+
+bool FrameLoop::show_again() {
+  return pictures_ == nullptr || pictures_->put(std::max(world_.frames() - 1, 0), present_list());
 }
 
 // Keeps the frame's positions for the next one, where the pictures need them.

@@ -53,7 +53,9 @@ class FrameLoop {
   void change_look(const std::vector<std::string>& settings);
   // Makes steps keep to this run's own budgets of time from now on, wherever those of an earlier run ended.
   void end_repeats();
-  // Puts the list of the world as it is, between two frames.
+  // Returns the list of the world as it is, between two frames.
+  DrawList present_list();
+  // Puts that list.
   bool show_again();
 
  private:

@@ -12,6 +12,7 @@
 #include "film/plan/shipped_files.h"
 #include "geometry/files/surface_file.h"
 #include "output/files/child_program.h"
+#include "output/files/exr_file.h"
 #include "output/run/run_folder.h"
 #include "render/renderer.h"
 
@@ -154,6 +155,15 @@ Finding cores() {
           ""};
 }
 
+Finding openexr() {
+  return {"OpenEXR",
+          writes_exr(),
+          false,
+          writes_exr() ? "built in" : "the program was built without it",
+          "passes for compositing",
+          "libopenexr-dev"};
+}
+
 }  // namespace
 
 std::vector<Finding> examine_machine() {
@@ -163,6 +173,7 @@ std::vector<Finding> examine_machine() {
           tool("ffmpeg", "-version", true, "makes video.mp4", "ffmpeg"),
           tool("ffprobe", "-version", false, "counts the frames of the film", "ffmpeg"),
           tool("gnuplot", "--version", false, "plots in the reports of supple bench", "gnuplot-nox"),
+          openexr(),
           font(),
           surface_reader(),
           scenes(),

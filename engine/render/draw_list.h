@@ -64,6 +64,7 @@ struct ClothLook {
 
 // Describes a surface whose vertices move while its other attributes stay.
 struct DrawMesh {
+  std::string name;                             // of its mask; it is in none when empty
   std::string label;                            // caption; none when empty
   std::vector<std::uint32_t> triangles;         // vertex indices, three a triangle, anticlockwise from outside
   std::vector<std::uint32_t> shadow_triangles;  // the same, those that cast its shadow; all of them when empty
@@ -94,7 +95,12 @@ enum class Backdrop {
   ground,       // a ground with shadows, which fades into the background
   plain,        // the colour of the background alone
   transparent,  // nothing: pictures have coverage
+  shadows,      // nothing but the ground's shadows, which are black with coverage
 };
+
+constexpr bool has_coverage(Backdrop backdrop) {
+  return backdrop == Backdrop::transparent || backdrop == Backdrop::shadows;
+}
 
 // Holds what a replay may change of a stage: its colours [sRGB] and the exposure.
 struct StageColors {

@@ -25,15 +25,28 @@ void set_light(const Program& program, const StageLight& light) {
   program.set("ray_up", light.rays.up);
 }
 
-Ground::Ground(const GlTable& gl, const std::filesystem::path& shaders, int width, int height, double largest_body)
+namespace {
+
+std::vector<std::string> shading(GroundShown shown, bool shadowed) {
+  std::vector<std::string> definitions = {"SHADED"};
+  if (shadowed) definitions.emplace_back("SHADOWED");
+  if (shown == GroundShown::shadows) definitions.emplace_back("SHADOWS_ALONE");
+  return definitions;
+}
+
+}  // namespace
+
+Ground::Ground(const GlTable& gl, const std::filesystem::path& shaders, int width, int height, double largest_body,
+               GroundShown shown)
     : gl_(gl),
       bare_(gl, shaders, "tiles", "ground"),
       arriving_(gl, shaders, "tiles", "ground_light"),
       arriving_unshadowed_(gl, shaders, "tiles", "ground_light", {"UNSHADOWED"}),
-      shadowed_(gl, shaders, "tiles", "ground", {"SHADED", "SHADOWED"}),
-      open_(gl, shaders, "tiles", "ground", {"SHADED"}),
+      shadowed_(gl, shaders, "tiles", "ground", shading(shown, true)),
+      open_(gl, shaders, "tiles", "ground", shading(shown, false)),
       width_(width),
       height_(height),
+      shown_(shown),
       occlusion_(largest_body),
       tiles_(width, height),
       open_tiles_(width, height),
@@ -134,16 +147,26 @@ void Ground::mark_occlusion(const Eigen::Matrix4f& view, const std::vector<float
   open_tiles_.mark(corners, triangles, view);
 }
 
-void Ground::draw(GLuint picture, const Eigen::Matrix4f& view, const StageLight& light, const ShadowMap& shadows,
-                  const StageCover::Frame& cover, const std::vector<DrawMesh>& meshes,
-                  const std::vector<std::vector<float>>& positions, const Tiles& covered) {
-  lit_ = Vec3(cover.light_center.x(), cover.light_center.z(), cover.light_radius);
+// Copies the bare ground into the picture, which is drawn when something of it has changed, or empties the picture.
+void Ground::begin_picture(GLuint picture, const Eigen::Matrix4f& view, const StageLight& light) {
+  if (shown_ == GroundShown::shadows) {
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, picture);
+    gl_.ClearColor(0, 0, 0, 0);
+    gl_.Clear(GL_COLOR_BUFFER_BIT);
+    return;
+  }
   const StageColors colors = {light.ground, light.background, light.exposure};
   if (!bare_view_ || *bare_view_ != view || bare_lit_ != lit_ || bare_colors_ != colors) draw_bare(view, light);
   gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
   gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, picture);
   gl_.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
 
+void Ground::draw(GLuint picture, const Eigen::Matrix4f& view, const StageLight& light, const ShadowMap& shadows,
+                  const StageCover::Frame& cover, const std::vector<DrawMesh>& meshes,
+                  const std::vector<std::vector<float>>& positions, const Tiles& covered) {
+  lit_ = Vec3(cover.light_center.x(), cover.light_center.z(), cover.light_radius);
+  begin_picture(picture, view, light);
   const std::vector<float>& open = occlusion_.compute(meshes, positions, cover.shade_center, cover.shade_extent);
   tiles_.clear();
   open_tiles_.clear();

@@ -33,10 +33,15 @@ struct StageLight {
 // Passes the lights and rays to a program whose shader includes film.glsl and lighting.glsl.
 void set_light(const Program& program, const StageLight& light);
 
+// Chooses what pictures have of the ground: all that is seen of it, or its shadows alone, as black with the coverage
+// that darkens a picture of the open ground as much as the shadow does.
+enum class GroundShown { all, shadows };
+
 class Ground {
  public:
   // largest_body: diagonal of the largest body [m].
-  Ground(const GlTable& gl, const std::filesystem::path& shaders, int width, int height, double largest_body);
+  Ground(const GlTable& gl, const std::filesystem::path& shaders, int width, int height, double largest_body,
+         GroundShown shown);
   ~Ground();
   Ground(const Ground&) = delete;
   Ground& operator=(const Ground&) = delete;
@@ -47,6 +52,7 @@ class Ground {
             const std::vector<std::vector<float>>& positions, const Tiles& covered);
 
  private:
+  void begin_picture(GLuint picture, const Eigen::Matrix4f& view, const StageLight& light);
   void draw_bare(const Eigen::Matrix4f& view, const StageLight& light);
   void mark_shadows(const Eigen::Matrix4f& view, const StageLight& light, double penumbra,
                     const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions);
@@ -57,6 +63,7 @@ class Ground {
   const GlTable& gl_;
   Program bare_, arriving_, arriving_unshadowed_, shadowed_, open_;
   int width_, height_;
+  GroundShown shown_;
   Vec3 lit_ = Vec3(0, 0, 1);  // centre x, z and radius of the stage in the frame in hand [m]
   GroundOcclusion occlusion_;
   Tiles tiles_;       // that shadows may reach

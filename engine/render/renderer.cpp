@@ -61,7 +61,8 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
   make_targets();
   shadows_ =
       std::make_unique<ShadowMap>(gl_, shaders, cover_.largest_body(), stage_.light.to_key.normalized(), stage_.width);
-  ground_ = std::make_unique<Ground>(gl_, shaders, stage_.width, stage_.height, cover_.largest_body());
+  ground_ = std::make_unique<Ground>(gl_, shaders, stage_.width, stage_.height, cover_.largest_body(),
+                                     stage_.backdrop == Backdrop::shadows ? GroundShown::shadows : GroundShown::all);
   tile_buffer_ = std::make_unique<TileBuffer>(gl_);
   textures_ = std::make_unique<TextureBuffer>(gl_, stage_.meshes);
   make_shading_program();
@@ -209,7 +210,7 @@ Image Renderer::draw(const DrawList& list) {
   zone.next("visibility");
   find_visible(view, light, list);
   zone.next("ground");
-  if (stage_.backdrop == Backdrop::ground) {
+  if (stage_.backdrop == Backdrop::ground || stage_.backdrop == Backdrop::shadows) {
     ground_->draw(picture_framebuffer_, view, light, *shadows_, cover, stage_.meshes, list.positions,
                   visibility_->full());
   } else {
@@ -225,6 +226,12 @@ Image Renderer::draw(const DrawList& list) {
   return image;
 }
 
+std::vector<PassImage> Renderer::passes(const DrawList& list, const DrawList* next,
+                                        std::span<const PicturePass> asked) const {
+  const bool ground = stage_.backdrop == Backdrop::ground || stage_.backdrop == Backdrop::shadows;
+  return passes_of({stage_.meshes, list, next, *visibility_, stage_.width, stage_.height, ground}, asked);
+}
+
 void Renderer::draw_marks(const Eigen::Matrix4f& view, const DrawList& list) {
   if (!marks_) marks_ = std::make_unique<Marks>(gl_, shaders_, stage_.width, stage_.height);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, picture_framebuffer_);
@@ -236,7 +243,7 @@ void Renderer::draw_marks(const Eigen::Matrix4f& view, const DrawList& list) {
 // Fills the picture with the colour of the background, or with nothing.
 void Renderer::clear_picture() {
   const Vec3 color = backdrop_of(stage_);
-  const bool transparent = stage_.backdrop == Backdrop::transparent;
+  const bool transparent = has_coverage(stage_.backdrop);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, picture_framebuffer_);
   gl_.Viewport(0, 0, stage_.width, stage_.height);
   const auto channel = [&](int k) { return transparent ? 0.0f : static_cast<float>(color[k]); };
@@ -282,7 +289,7 @@ Image Renderer::read_picture() {
     for (std::size_t x = 0; x + 1 < width; ++x) std::memcpy(to + 3 * x, from + 4 * x, 4);
     std::memcpy(to + 3 * (width - 1), from + 4 * (width - 1), 3);
   }
-  if (stage_.backdrop == Backdrop::transparent) read_coverage(image);
+  if (has_coverage(stage_.backdrop)) read_coverage(image);
   return image;
 }
 

@@ -18,6 +18,7 @@
 #include "render/legend.h"
 #include "render/marks.h"
 #include "render/overlays.h"
+#include "render/passes.h"
 #include "render/program.h"
 #include "render/shadow_map.h"
 #include "render/stage_cover.h"
@@ -37,6 +38,8 @@ class Renderer {
   Renderer& operator=(const Renderer&) = delete;
 
   Image draw(const DrawList& list);
+  // Returns passes of the list that was drawn last (passes.h). next: the list of the next picture, or null.
+  std::vector<PassImage> passes(const DrawList& list, const DrawList* next, std::span<const PicturePass> asked) const;
 
   std::string backend() const { return context_.backend(); }
   const std::string& name() const { return name_; }        // GL_RENDERER

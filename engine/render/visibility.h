@@ -33,7 +33,8 @@ class Visibility {
   // date.
   const std::vector<std::uint32_t>& surfaces() const { return surfaces_; }
 
-  Tiles& tiles() { return tiles_; }            // in which a pixel shows something
+  Tiles& tiles() { return tiles_; }  // in which a pixel shows something
+  const Tiles& tiles() const { return tiles_; }
   const Tiles& full() const { return full_; }  // in which all samples do
   std::vector<float> sample_places() const { return buffer_.places(); }
 

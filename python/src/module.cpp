@@ -103,7 +103,7 @@ class FilmFace {
     if (!(fps > 0)) throw InputError("fps", "must be above 0");
     const std::string ending = path_.extension().string();
     const auto format = value_named<FilmFormat>(ending.empty() ? "" : ending.substr(1));
-    if (!format || *format == FilmFormat::png) throw InputError(path_.string(), "a film ends in .mp4, .webm or .gif");
+    if (!format || *format == FilmFormat::png) throw InputError(path_.string(), "a film ends in .mp4, .webm, .mov or .gif");
     coding_.format = *format;
   }
 

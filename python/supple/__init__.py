@@ -35,7 +35,7 @@ from ._supple import Body, Colliders, Model, State, WorldState, replays, scenes,
 
 
 class Film(_supple.Film):
-    """A film that ffmpeg encodes while its pictures are added. path: ends in .mp4, .webm or .gif."""
+    """A film that ffmpeg encodes while its pictures are added. path: ends in .mp4, .webm, .mov or .gif."""
 
     def __enter__(self):
         return self

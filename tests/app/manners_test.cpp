@@ -259,8 +259,8 @@ TEST(Doctor, SaysWhatThereIsAndWhatIsMissing) {
     EXPECT_NE(text.out.find(start + check["name"].get<std::string>()), std::string::npos) << text.out;
   }
   EXPECT_EQ(ready, told["ready"].get<bool>());
-  EXPECT_EQ(names, (std::set<std::string>{"processor", "cores", "OpenGL", "ffmpeg", "ffprobe", "gnuplot", "font",
-                                          "surface reader", "scenes", "cache", "disk"}));
+  EXPECT_EQ(names, (std::set<std::string>{"processor", "cores", "OpenGL", "ffmpeg", "ffprobe", "gnuplot", "OpenEXR",
+                                          "font", "surface reader", "scenes", "cache", "disk"}));
 }
 
 TEST(Doctor, MissesWhatIsNotInPath) {

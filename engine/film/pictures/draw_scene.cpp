@@ -115,6 +115,7 @@ void add_colliders(const std::vector<SceneCollider>& colliders, const std::vecto
 
 DrawMesh collider_mesh(const SceneCollider& collider, const Skin& skin) {
   DrawMesh mesh = mesh_of(skin, collider.def.shape.paint);
+  mesh.name = collider.def.name;
   mesh.color = collider_color(collider.def);
   mesh.gloss = collider_gloss;
   mesh.rest = bounds_of(at_pose(skin.rest.points, collider.pose(0)));
@@ -151,9 +152,11 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
   stage.headline_template = longest_headline(scene);
   if (scene.look.backdrop == BackdropKind::plain) stage.backdrop = Backdrop::plain;
   if (scene.look.backdrop == BackdropKind::transparent) stage.backdrop = Backdrop::transparent;
+  if (scene.look.backdrop == BackdropKind::shadows) stage.backdrop = Backdrop::shadows;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Skin& skin = drawn[b].skin;
     DrawMesh mesh = mesh_of(skin, drawn[b].layers);
+    mesh.name = bodies[b].def.name;
     if (scene.look.show_labels) mesh.label = bodies[b].def.label;
     mesh.kept_clear = true;
     mesh.printed = bodies[b].def.pattern == Pattern::checks ? Printed::checks : Printed::grid;

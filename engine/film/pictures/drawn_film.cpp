@@ -83,6 +83,7 @@ void DrawnFilm::add_ghosts(const SceneDef& scene, const std::vector<Body>& bodie
   ghosts_.emplace(scene.look.ghost, bodies);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     DrawMesh ghost = stage_.meshes[b];
+    ghost.name.clear();
     ghost.label.clear();
     ghost.layers.clear();
     ghost.square.clear();

@@ -27,6 +27,7 @@ DrawnSupports::DrawnSupports(const std::vector<Body>& bodies, Stage& stage) : bo
     std::vector<Drawn>& drawn = supports_.emplace_back();
     for (Support& one : supports_of(body)) {
       stage.meshes.push_back(mesh_of(one.surface));
+      stage.meshes.back().name = body.def.name + ".supports";  // no body's name has a dot
       std::vector<std::int32_t> held = body.description.handles[one.handle].vertices;
       drawn.push_back({std::move(one), std::move(held)});
     }

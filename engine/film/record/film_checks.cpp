@@ -116,6 +116,22 @@ void check_pictures(const std::filesystem::path& frames, int count) {
   }
 }
 
+void check_kept_passes(const std::filesystem::path& passes, const SceneDef& scene, int count) {
+  const auto check = [&passes](PicturePass pass, const std::string& mesh, int frame) {
+    const std::filesystem::path file = pass_file(passes, pass, mesh, frame);
+    std::error_code error;
+    if (!std::filesystem::exists(file, error))
+      throw InputError(file.string(), "is missing, and --resume does not make it again; start anew without --resume");
+  };
+  for (int frame = 0; frame < count; ++frame) {
+    for (const PicturePass pass : scene.output.passes) {
+      if (pass != PicturePass::masks) check(pass, "", frame);
+      for (const BodyDef& body : scene.bodies)
+        if (pass == PicturePass::masks) check(pass, body.name, frame);
+    }
+  }
+}
+
 void note_other_graphs(const SceneDef& scene, const std::filesystem::path& run, int kept_frames) {
   if (kept_frames == 0 || !scene.text.error_graph) return;
   const auto before = json_object_in<Json>(run / "run.json");
@@ -141,8 +157,9 @@ bool is_of_run(const std::filesystem::path& file, const std::filesystem::path& r
   const std::filesystem::path inside = full_path(file).lexically_relative(full_path(run));
   if (inside.empty()) return false;
   const std::string first = inside.begin()->string();
-  for (const char* own : {"frames", "motion", "states", "fields", "checkpoint", "run.json", "profile.json",
-                          "trace.json", "video.mp4", "video.webm", "video.gif", "poster.png", "sheet.png"}) {
+  for (const char* own :
+       {"frames", "passes", "motion", "states", "fields", "checkpoint", "run.json", "profile.json", "trace.json",
+        "video.mp4", "video.webm", "video.mov", "video.gif", "poster.png", "sheet.png"}) {
     if (first == own || first == std::string(own) + ".part") return true;
   }
   return false;

@@ -25,6 +25,9 @@ void check_rows_and_motion(const std::filesystem::path& run, const std::vector<B
 // Checks the pictures of frames that are not made again.
 void check_pictures(const std::filesystem::path& frames, int count);
 
+// Does the same for their passes.
+void check_kept_passes(const std::filesystem::path& passes, const SceneDef& scene, int count);
+
 // Prints a note where the pictures that are not made again have graphs of another length, because the film was begun
 // with another number of frames.
 void note_other_graphs(const SceneDef& scene, const std::filesystem::path& run, int kept_frames);

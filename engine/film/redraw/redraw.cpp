@@ -14,6 +14,7 @@
 #include "base/threads.h"
 #include "film/pictures/drawn_film.h"
 #include "film/pictures/reference_run.h"
+#include "film/plan/film_coding.h"
 #include "film/plan/shipped_files.h"
 #include "film/record/film_identity.h"
 #include "output/files/folder_lock.h"
@@ -40,6 +41,7 @@ constexpr std::array seen = {"title",
                              "output.width",
                              "output.height",
                              "output.samples",
+                             "output.passes",
                              "body[].color",
                              "body[].back_color",
                              "body[].yarn",
@@ -113,7 +115,7 @@ void check_same_motion(const DrawPlan& plan, const Json& info, const LoadedFilm&
     problems.push_back(
         {film.info.scene_file, 0, 0,
          fmt::format("{} is {} here and was {} in the run: only what is seen may differ (camera, look, "
-                     "output's width, height and samples, colours, labels, patterns, colliders being visible)",
+                     "output's width, height, samples and passes, colours, labels, patterns, colliders being visible)",
                      difference.path, difference.b, difference.a)});
   }
   if (simulated_part(member_text(info, "replay")) != simulated_part(film.info.replay_json))
@@ -283,6 +285,7 @@ LoadedDrawing load_drawing(const DrawPlan& plan) {
   const FilmPlan film = plan_of_run(plan, info);
   LoadedDrawing drawing{load_film(film, {}), {}, {}, {}, 0, {}, 0, {}};
   check_same_motion(plan, info, drawing.film);
+  check_passes(drawing.film.world.script().scene());
   drawing.film.info.framed = framed_in(run.info_json);
   make_skins(film, drawing.film);
   drawing.motion = motion_of(run, drawing.film);
@@ -333,6 +336,7 @@ void open_drawing(const std::filesystem::path& folder, const LoadedDrawing& draw
   if (known && !keep) {
     remove_film(folder);
     remove_pictures(folder / "frames", 0);
+    remove_passes(folder / "passes", 0);
   }
 }
 
@@ -349,7 +353,9 @@ DrawResult draw_pictures(const DrawPlan& plan, LoadedDrawing& drawing, const std
   Drawing lists(drawing);
   result.legend = lists.drawn().field_look();
   if (plan.legend_apart && result.legend) lists.drawn().hide_legend();
-  Pictures pictures(lists.stage(), plan.gl, shaders_folder(), PictureTargets{folder / "frames", true, video, 0});
+  const std::vector<PicturePass>& passes = drawing.film.world.script().scene().output.passes;
+  Pictures pictures(lists.stage(), plan.gl, shaders_folder(),
+                    PictureTargets{folder / "frames", true, video, 0, folder / "passes", passes});
   for (int picture = range.first; picture < range.last; ++picture) {
     if (interrupted()) {
       result.end = FilmEnd::interrupted;
@@ -359,6 +365,8 @@ DrawResult draw_pictures(const DrawPlan& plan, LoadedDrawing& drawing, const std
     result.pictures += static_cast<int>(pictures.take_written().size());
     told(result.pictures);
   }
+  const bool part = result.end == FilmEnd::done && range.last < static_cast<int>(drawing.frames.size());
+  if (part && pictures.want_next()) pictures.put_next(range.last, lists.list(drawing.frames[range.last]));
   pictures.finish();
   result.pictures += static_cast<int>(pictures.take_written().size());
   told(result.pictures);

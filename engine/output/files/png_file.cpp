@@ -115,14 +115,31 @@ bool looks_whole(const std::filesystem::path& png) {
          std::string_view(tail, sizeof tail) == end_of_file;
 }
 
-PngImage read_png(const std::filesystem::path& path) {
+namespace {
+
+// format: as libpng names it. Returns the samples as the file's rgb.
+PngImage read_as(const std::filesystem::path& path, std::uint32_t format) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   if (!png_image_begin_read_from_file(&image, path.c_str())) throw InputError(path.string(), image.message);
-  image.format = PNG_FORMAT_RGB;
+  image.format = format;
   PngImage result{int(image.width), int(image.height), std::vector<std::uint8_t>(PNG_IMAGE_SIZE(image))};
   if (!png_image_finish_read(&image, nullptr, result.rgb.data(), 0, nullptr))
     throw InputError(path.string(), image.message);
+  return result;
+}
+
+}  // namespace
+
+PngImage read_png(const std::filesystem::path& path) { return read_as(path, PNG_FORMAT_RGB); }
+
+PngImage read_png_with_coverage(const std::filesystem::path& path) {
+  const PngImage read = read_as(path, PNG_FORMAT_RGBA);
+  PngImage result{read.width, read.height, {}, {}};
+  for (std::size_t i = 0; i < read.rgb.size(); i += 4) {
+    result.rgb.insert(result.rgb.end(), &read.rgb[i], &read.rgb[i] + 3);
+    result.alpha.push_back(read.rgb[i + 3]);
+  }
   return result;
 }
 

@@ -24,10 +24,14 @@ void write_png(const std::filesystem::path& path, int width, int height, std::sp
 struct PngImage {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgb;
+  std::vector<std::uint8_t> alpha = {};  // coverage by pixel, by which the colours are not multiplied; empty: not read
 };
 
 // Reads any PNG as 8-bit RGB. Throws InputError when that fails.
 PngImage read_png(const std::filesystem::path& path);
+
+// Does the same with coverage, which is whole where the file has none.
+PngImage read_png_with_coverage(const std::filesystem::path& path);
 
 // Tells whether a file begins and ends as a PNG does, without reading what lies between.
 bool looks_whole(const std::filesystem::path& png);

@@ -32,9 +32,9 @@ constexpr const char* part_suffix = ".part";  // marks a file that is still bein
 bool all_digits(std::string_view text) { return text.find_first_not_of("0123456789") == std::string_view::npos; }
 
 // Returns the frame of a picture's file, and nothing for a file that no run writes.
-std::optional<long> frame_of(const std::filesystem::path& file) {
+std::optional<long> frame_of(const std::filesystem::path& file, const char* ending) {
   const std::string stem = file.stem().string();
-  if (file.extension() != ".png" || stem.size() < 6 || stem.size() > 9 || !all_digits(stem)) return std::nullopt;
+  if (file.extension() != ending || stem.size() < 6 || stem.size() > 9 || !all_digits(stem)) return std::nullopt;
   return std::stol(stem);
 }
 
@@ -127,6 +127,7 @@ RunFolder::RunFolder(const std::filesystem::path& path, int kept_frames) : path_
     remove_run(path);
   }
   remove_pictures(path / "frames", kept_frames);
+  remove_passes(path / "passes", kept_frames);
   remove_film(path);
   for (const char* part : {"profile.json", "trace.json"}) std::filesystem::remove(path / part, error);
   for (const char* part : {"frames", "motion", "checkpoint"}) make_folder(path / part);
@@ -134,7 +135,7 @@ RunFolder::RunFolder(const std::filesystem::path& path, int kept_frames) : path_
 
 void remove_film(const std::filesystem::path& folder) {
   std::error_code error;
-  for (const char* ending : {"mp4", "webm", "gif"}) {
+  for (const char* ending : {"mp4", "webm", "mov", "gif"}) {
     for (const char* film : {"video.", "video.part."})
       std::filesystem::remove(folder / (std::string(film) + ending), error);
   }
@@ -143,9 +144,31 @@ void remove_film(const std::filesystem::path& folder) {
 
 void remove_pictures(const std::filesystem::path& frames, int first) {
   remove_own(frames, [first](const std::filesystem::path& file) {
-    const std::optional<long> frame = frame_of(file);
+    const std::optional<long> frame = frame_of(file, ".png");
     return frame && *frame >= first;
   });
+}
+
+void remove_passes(const std::filesystem::path& passes, int first) {
+  std::error_code error;
+  std::vector<std::filesystem::path> folders;
+  for (const Name<PicturePass>& pass : Names<PicturePass>::table) folders.push_back(passes / pass.text);
+  for (const auto& entry :
+       std::filesystem::directory_iterator(pass_file(passes, PicturePass::masks, "", 0).parent_path(), error))
+    if (entry.is_directory(error)) folders.insert(folders.begin(), entry.path());
+  for (const std::filesystem::path& folder : folders) {
+    remove_own(folder, [first](const std::filesystem::path& file) {
+      const std::optional<long> frame = frame_of(file, ".exr");
+      return frame && *frame >= first;
+    });
+    if (std::filesystem::is_empty(folder, error)) std::filesystem::remove(folder, error);
+  }
+  if (std::filesystem::is_empty(passes, error)) std::filesystem::remove(passes, error);
+}
+
+std::filesystem::path pass_file(const std::filesystem::path& passes, PicturePass pass, const std::string& mesh,
+                                int index) {
+  return passes / name_of(pass) / mesh / fmt::format("{:06}.exr", index);
 }
 
 std::filesystem::path picture_file(const std::filesystem::path& frames, int index) {

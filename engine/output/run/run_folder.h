@@ -1,5 +1,5 @@
-// Manages the folder that a run leaves behind: run.json, frames/, video.mp4 (or .webm, .gif), motion/, profile.json and
-// checkpoint/, and states/ and fields/ if they were requested.
+// Manages the folder that a run leaves behind: run.json, frames/, video.mp4 (or .webm, .mov, .gif), motion/,
+// profile.json and checkpoint/, and passes/, states/ and fields/ if they were requested.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/picture_pass.h"
 #include "base/types.h"
 #include "output/run/profile.h"
 
@@ -45,6 +46,11 @@ std::string info_json(const RunInfo& info);
 
 // Returns the file of a frame's picture in a folder of pictures.
 std::filesystem::path picture_file(const std::filesystem::path& frames, int index);
+// Returns the file of a frame's pass in a folder of passes. mesh: whose mask it is; empty for other passes.
+std::filesystem::path pass_file(const std::filesystem::path& passes, PicturePass pass, const std::string& mesh,
+                                int index);
+// Removes the passes of frames from `first` on, and those that are incomplete. Other files stay.
+void remove_passes(const std::filesystem::path& passes, int first);
 // Removes the film in a folder, of any format, with its poster and sheet.
 void remove_film(const std::filesystem::path& folder);
 // Removes the pictures of frames from `first` on, and those that are incomplete. Other files stay.
@@ -59,6 +65,7 @@ class RunFolder {
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path frames() const { return path_ / "frames"; }
+  std::filesystem::path passes() const { return path_ / "passes"; }
   std::filesystem::path frame(int index) const { return picture_file(frames(), index); }
   std::filesystem::path motion(const std::string& body) const { return path_ / "motion" / (body + ".pc2"); }
   std::filesystem::path forces(const std::string& body) const { return path_ / "motion" / (body + ".forces"); }

@@ -56,6 +56,20 @@ void set_chroma(const std::uint16_t* sums, int count, const Weights& weights, st
   }
 }
 
+// The same for 10 bits.
+constexpr Weights fine_luma = weights_of(red_share, green_share, blue_share, 876.0 / 255);
+constexpr Weights fine_blue = weights_of(-red_share, -green_share, 1 - blue_share, 896.0 / 255 / blue_span);
+constexpr Weights fine_red = weights_of(1 - red_share, -green_share, -blue_share, 896.0 / 255 / red_span);
+
+void set_fine(std::span<const std::uint8_t> rgb, const Weights& weights, int middle, std::uint8_t* out) {
+  for (std::size_t i = 0; i < rgb.size(); i += 3, out += 2) {
+    const int sum = weights.red * rgb[i] + weights.green * rgb[i + 1] + weights.blue * rgb[i + 2];
+    const int value = (sum + (middle << 16) + (1 << 15)) >> 16;
+    out[0] = static_cast<std::uint8_t>(value & 255);
+    out[1] = static_cast<std::uint8_t>(value >> 8);
+  }
+}
+
 }  // namespace
 
 void film_planes(int width, int height, std::span<const std::uint8_t> rgb, std::vector<std::uint8_t>& planes) {
@@ -71,6 +85,20 @@ void film_planes(int width, int height, std::span<const std::uint8_t> rgb, std::
     std::uint8_t* blue = &planes[pixels + std::size_t(width / 2) * y];
     set_chroma(sums.data(), width / 2, blue_chroma, blue);
     set_chroma(sums.data(), width / 2, red_chroma, blue + pixels / 4);
+  }
+}
+
+void fine_film_planes(std::span<const std::uint8_t> rgb, std::span<const std::uint8_t> alpha,
+                      std::vector<std::uint8_t>& planes) {
+  const std::size_t pixels = rgb.size() / 3;
+  planes.resize(2 * (3 * pixels + alpha.size()));
+  set_fine(rgb, fine_luma, 64, planes.data());
+  set_fine(rgb, fine_blue, 512, planes.data() + 2 * pixels);
+  set_fine(rgb, fine_red, 512, planes.data() + 4 * pixels);
+  for (std::size_t i = 0; i < alpha.size(); ++i) {
+    const int value = (alpha[i] * 1023 + 127) / 255;
+    planes[6 * pixels + 2 * i] = static_cast<std::uint8_t>(value & 255);
+    planes[6 * pixels + 2 * i + 1] = static_cast<std::uint8_t>(value >> 8);
   }
 }
 

@@ -13,4 +13,10 @@ namespace supple {
 // where a file does not say otherwise (ITU-T H.264, annex E.2.1). width and height must be even.
 void film_planes(int width, int height, std::span<const std::uint8_t> rgb, std::vector<std::uint8_t>& planes);
 
+// Does the same with 10 bits a value (Y from 64 to 940, Cb and Cr from 64 to 960), each in two bytes, the lower one
+// first, and with chroma for each pixel. alpha: coverage by pixel, which becomes a fourth plane (0 to 1023); empty:
+// there is none.
+void fine_film_planes(std::span<const std::uint8_t> rgb, std::span<const std::uint8_t> alpha,
+                      std::vector<std::uint8_t>& planes);
+
 }  // namespace supple

@@ -13,6 +13,7 @@
 #include "output/files/png_file.h"
 #include "output/run/run_folder.h"
 #include "output/video/film_colors.h"
+#include "output/video/film_coverage.h"
 
 namespace supple {
 namespace {
@@ -46,7 +47,7 @@ std::string codec_words(const FilmCoding& coding, int threads) {
   const auto of_quality = [&coding](int draft, int good, int best) {
     return coding.quality == FilmQuality::draft ? draft : coding.quality == FilmQuality::good ? good : best;
   };
-  switch (coding.format) {
+  switch (coding.chosen()) {
     case FilmFormat::mp4_h265:
       return fmt::format(
           "-c:v libx265 -preset fast -crf {} -x265-params log-level=error:pools={}:frame-threads=1 "
@@ -57,6 +58,9 @@ std::string codec_words(const FilmCoding& coding, int threads) {
                          of_quality(42, 31, 20), threads);
     case FilmFormat::webm_av1:
       return fmt::format("-c:v libsvtav1 -preset 8 -crf {} -svtav1-params lp={}", of_quality(45, 32, 20), threads);
+    case FilmFormat::mov:
+      return fmt::format("-c:v prores_ks -profile:v 4444 -vendor apl0 -alpha_bits {} -qscale:v {} -threads {}",
+                         coding.coverage ? 8 : 0, of_quality(9, 3, 1), threads);
     default: break;
   }
   return fmt::format("-c:v libx264 -preset {} -crf {} -threads {} -movflags +faststart",
@@ -69,8 +73,26 @@ std::string gif_words(const FilmCoding& coding) {
   const int colors = coding.quality == FilmQuality::draft ? 64 : 256;
   return fmt::format(
       "-filter_complex split[a][b];[a]palettegen=max_colors={}:stats_mode=full[p];[b][p]paletteuse="
-      "dither=bayer:bayer_scale={}:diff_mode=rectangle -loop 0",
-      colors, coding.quality == FilmQuality::best ? 3 : 5);
+      "dither=bayer:bayer_scale={}{} -loop 0",
+      colors, coding.quality == FilmQuality::best ? 3 : 5, coding.coverage ? "" : ":diff_mode=rectangle");
+}
+
+// Returns what ffmpeg calls the pixels that it is given.
+const char* pixel_format(const FilmCoding& coding) {
+  switch (coding.chosen()) {
+    case FilmFormat::gif: return coding.coverage ? "rgba" : "rgb24";
+    case FilmFormat::mov: return coding.coverage ? "yuva444p10le" : "yuv444p10le";
+    default: return coding.coverage ? "yuva420p" : "yuv420p";
+  }
+}
+
+// Returns the words that name the film's colours. The transfer function is that of the frames, sRGB, for which ProRes
+// has no name: there it is that of BT.709, as programs for cutting assume. Its encoder takes the names from the frames.
+const char* color_words(FilmFormat format) {
+  if (format == FilmFormat::mov)
+    return "-vf setparams=range=tv:color_primaries=bt709:color_trc=bt709:colorspace=bt709 -color_range tv "
+           "-colorspace bt709 -color_primaries bt709 -color_trc bt709";
+  return "-color_range tv -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1";
 }
 
 // Keeps ffmpeg to files and pipes, whatever a name looks like. It wants to be told for its input and for its output.
@@ -78,16 +100,15 @@ constexpr const char* local_alone = "-protocol_whitelist file,pipe";
 
 std::vector<std::string> ffmpeg_words(const std::filesystem::path& part, int width, int height, double fps,
                                       const FilmCoding& coding) {
-  const bool gif = coding.format == FilmFormat::gif;
+  const bool gif = coding.chosen() == FilmFormat::gif;
   const std::string words =
       // Frames come in the film's own colours (film_colors.h): ffmpeg took 4 ms for the same conversion.
       fmt::format(
           "ffmpeg -nostdin -y -loglevel error {} -f rawvideo -pixel_format {} -video_size {}x{} -framerate {} "
           "-i pipe:0 {} ",
-          local_alone, gif ? "rgb24" : "yuv420p", width, height, fps, local_alone) +
-      // The transfer function is that of the frames, sRGB.
+          local_alone, pixel_format(coding), width, height, fps, local_alone) +
       (gif ? gif_words(coding)
-           : "-pix_fmt yuv420p -color_range tv -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 " +
+           : fmt::format("-pix_fmt {} {} ", pixel_format(coding), color_words(coding.chosen())) +
                  codec_words(coding, encoder_threads(width, height)));
   std::vector<std::string> list;
   std::istringstream stream(words);
@@ -98,15 +119,22 @@ std::vector<std::string> ffmpeg_words(const std::filesystem::path& part, int wid
 
 }  // namespace
 
-std::vector<std::string> coding_warnings(const FilmCoding& coding, double fps, bool transparent) {
+bool holds_coverage(FilmFormat format) {
+  switch (format) {
+    case FilmFormat::webm:
+    case FilmFormat::mov:
+    case FilmFormat::gif:
+    case FilmFormat::png: return true;
+    case FilmFormat::mp4:
+    case FilmFormat::mp4_h265:
+    case FilmFormat::webm_av1: break;
+  }
+  return false;
+}
+
+std::vector<std::string> coding_warnings(const FilmCoding& coding, double fps) {
   std::vector<std::string> list;
-  const bool webm = coding.format == FilmFormat::webm || coding.format == FilmFormat::webm_av1;
-  if (transparent && (webm || coding.format == FilmFormat::gif))
-    list.push_back(
-        fmt::format("the film is not transparent, because supple gives a {} no coverage: it has the colour of "
-                    "the background; pictures (frames/, or --format png) have coverage",
-                    webm ? "WebM" : "GIF"));
-  if (const int every = frames_for_one(coding.format, fps); every > 1)
+  if (const int every = frames_for_one(coding.chosen(), fps); every > 1)
     list.push_back(
         fmt::format("a GIF shows no more than 50 pictures a second: of {:g}, it has one in {}, and its speed is "
                     "that of the film",
@@ -120,6 +148,7 @@ std::string film_file(FilmFormat format) {
     case FilmFormat::mp4_h265: return "video.mp4";
     case FilmFormat::webm:
     case FilmFormat::webm_av1: return "video.webm";
+    case FilmFormat::mov: return "video.mov";
     case FilmFormat::gif: return "video.gif";
     case FilmFormat::png: break;
   }
@@ -130,7 +159,8 @@ VideoEncoder::VideoEncoder(std::filesystem::path video, int width, int height, d
     : video_(std::move(video)), part_(part_of(video_)), width_(width), height_(height), coding_(coding) {
   std::error_code ignored;
   std::filesystem::remove(part_, ignored);  // of a run that was killed
-  every_ = frames_for_one(coding_.format, fps);
+  SUPPLE_CHECK(!coding.coverage || holds_coverage(coding.chosen()), ==, true);
+  every_ = frames_for_one(coding_.chosen(), fps);
   ffmpeg_.emplace(ffmpeg_words(part_, width, height, fps / every_, coding_));
 }
 
@@ -141,14 +171,33 @@ VideoEncoder::~VideoEncoder() {
   std::filesystem::remove(part_, ignored);
 }
 
-bool VideoEncoder::add(std::span<const std::uint8_t> rgb) {
+// Sets planes_ to a frame as ffmpeg is given it.
+void VideoEncoder::set_planes(std::span<const std::uint8_t> rgb, std::span<const std::uint8_t> alpha) {
+  const FilmFormat format = coding_.chosen();
+  std::vector<std::uint8_t> filled;
+  if (coding_.coverage && format != FilmFormat::gif) {
+    filled = filled_colors(width_, height_, rgb, alpha);
+    rgb = filled;
+  }
+  if (format == FilmFormat::gif) {
+    planes_ = dithered_coverage(width_, rgb, alpha);
+  } else if (format == FilmFormat::mov) {
+    fine_film_planes(rgb, alpha, planes_);
+  } else {
+    film_planes(width_, height_, rgb, planes_);
+    planes_.insert(planes_.end(), alpha.begin(), alpha.end());
+  }
+}
+
+bool VideoEncoder::add(std::span<const std::uint8_t> rgb, std::span<const std::uint8_t> alpha) {
+  SUPPLE_CHECK(alpha.size(), ==, coding_.coverage ? std::size_t(width_) * height_ : 0);
   const int number = frames_++;
   if (!taken_) return false;
   if (number % every_ != 0) return true;
-  if (coding_.format == FilmFormat::gif) {
+  if (coding_.chosen() == FilmFormat::gif && !coding_.coverage) {
     taken_ = ffmpeg_->write(rgb);
   } else {
-    film_planes(width_, height_, rgb, planes_);
+    set_planes(rgb, alpha);
     taken_ = ffmpeg_->write(planes_);
   }
   return taken_;
@@ -159,10 +208,10 @@ void VideoEncoder::add_files(const std::filesystem::path& frames, int count) {
     while (taken_ && unread_.empty() && frames_ < count) {
       const std::filesystem::path file = picture_file(frames, frames_);
       const Zone zone("read frame", {}, frames_);
-      const PngImage image = read_png(file);
+      const PngImage image = coding_.coverage ? read_png_with_coverage(file) : read_png(file);
       if (image.width != width_ || image.height != height_)
         throw InputError(file.string(), "is not of the film's size");
-      add(image.rgb);
+      add(image.rgb, image.alpha);
     }
   } catch (const InputError& error) {
     unread_ = error.what();

@@ -19,6 +19,7 @@ enum class FilmFormat {
   mp4_h265,  // smaller, slower to make
   webm,      // VP9, for pages
   webm_av1,  // smaller, slower to make
+  mov,       // ProRes 4444, for programs that cut films
   gif,       // loops; 256 colours that are chosen from the whole film, so that it is held in memory meanwhile
   png,       // no film: the frames are files, with their coverage where the background is transparent
 };
@@ -26,7 +27,8 @@ template <>
 struct Names<FilmFormat> {
   static constexpr std::array table = {Name{FilmFormat::mp4, "mp4"},   Name{FilmFormat::mp4_h265, "mp4-h265"},
                                        Name{FilmFormat::webm, "webm"}, Name{FilmFormat::webm_av1, "webm-av1"},
-                                       Name{FilmFormat::gif, "gif"},   Name{FilmFormat::png, "png"}};
+                                       Name{FilmFormat::mov, "mov"},   Name{FilmFormat::gif, "gif"},
+                                       Name{FilmFormat::png, "png"}};
 };
 enum class FilmQuality { draft, good, best };
 template <>
@@ -37,11 +39,18 @@ struct Names<FilmQuality> {
 
 // Describes how a film is encoded.
 struct FilmCoding {
-  FilmFormat format = FilmFormat::mp4;
+  std::optional<FilmFormat> format = {};  // nothing: the usual one
   FilmQuality quality = FilmQuality::good;
+  bool coverage = false;  // the film is transparent where its pictures are
+
+  FilmFormat chosen() const { return format.value_or(coverage ? FilmFormat::webm : FilmFormat::mp4); }
 };
-// Returns what a film of pictures at this rate, with or without coverage, cannot hold of them, for people.
-std::vector<std::string> coding_warnings(const FilmCoding& coding, double fps, bool transparent);
+
+// Tells whether films of a format can be transparent.
+bool holds_coverage(FilmFormat format);
+
+// Returns what a film of pictures at this rate cannot hold of them, for people.
+std::vector<std::string> coding_warnings(const FilmCoding& coding, double fps);
 
 // Returns the name of the film's file in its folder, "video.mp4"; empty where there is no film.
 std::string film_file(FilmFormat format);
@@ -64,9 +73,10 @@ class VideoEncoder {
   VideoEncoder(std::filesystem::path video, int width, int height, double fps, const FilmCoding& coding = {});
   ~VideoEncoder();
 
-  // Adds a frame: 8-bit sRGB, rows from the top. Waits while ffmpeg is busy. Returns false once ffmpeg takes no more
-  // frames. A GIF leaves out those for which it is too slow.
-  bool add(std::span<const std::uint8_t> rgb);
+  // Adds a frame: 8-bit sRGB, rows from the top, and for a film with coverage that of each pixel, by which the colours
+  // are not multiplied. Waits while ffmpeg is busy. Returns false once ffmpeg takes no more frames. A GIF leaves out
+  // those for which it is too slow.
+  bool add(std::span<const std::uint8_t> rgb, std::span<const std::uint8_t> alpha = {});
 
   // Adds the frames of a folder (000000.png, 000001.png, ...) that have not been added yet, until `count` frames have
   // been added in all. If one of them cannot be read, no film is made.
@@ -79,6 +89,7 @@ class VideoEncoder {
   VideoResult finish();
 
  private:
+  void set_planes(std::span<const std::uint8_t> rgb, std::span<const std::uint8_t> alpha);
   VideoResult failure(std::string reason, std::string told = "") const;
 
   std::filesystem::path video_, part_;

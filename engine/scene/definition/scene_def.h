@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/names.h"
+#include "base/picture_pass.h"
 #include "geometry/shapes/shape.h"
 #include "geometry/skins/skin.h"
 #include "geometry/solids/solid_surface.h"
@@ -275,12 +276,18 @@ struct CameraDef {
 };
 
 // Names what is seen behind the bodies.
-enum class BackdropKind { ground, plain, transparent };
+enum class BackdropKind { ground, plain, transparent, shadows };
 template <>
 struct Names<BackdropKind> {
   static constexpr std::array table = {Name{BackdropKind::ground, "ground"}, Name{BackdropKind::plain, "plain"},
-                                       Name{BackdropKind::transparent, "transparent"}};
+                                       Name{BackdropKind::transparent, "transparent"},
+                                       Name{BackdropKind::shadows, "shadows"}};
 };
+
+// Tells whether pictures before a backdrop have coverage.
+constexpr bool is_transparent(BackdropKind kind) {
+  return kind == BackdropKind::transparent || kind == BackdropKind::shadows;
+}
 
 // Names sets of lamps (render/light_rig.h).
 enum class LightKind { studio, sunset, overcast, dark };
@@ -361,8 +368,9 @@ struct TextDef {
 struct OutputDef {
   int width = 1280;
   int height = 720;
-  int samples = 4;      // of antialiasing, a pixel
-  bool energy = false;  // whether kinetic, elastic and gravitational energy are computed each frame
+  int samples = 4;                       // of antialiasing, a pixel
+  bool energy = false;                   // whether kinetic, elastic and gravitational energy are computed each frame
+  std::vector<PicturePass> passes = {};  // pictures in numbers beside those of the film, in ascending order
 };
 
 struct SceneDef {

@@ -8,7 +8,8 @@ LookDef read_look(const ConfigTable& root, LookDef look) {
   if (!table) return look;
   look.backdrop = table->word<BackdropKind>(
       {"backdrop", "",
-       "a ground with shadows, the colour of the background alone, exactly as asked for, or pictures with coverage"},
+       "a ground with shadows, the colour of the background alone, exactly as asked for, or pictures with coverage: "
+       "of the bodies, or of the bodies and the shadows on the ground"},
       look.backdrop);
   look.ground = table->color({"ground", "sRGB", "colour of the ground"}, look.ground);
   look.background = table->color({"background", "sRGB", "colour that the ground fades into"}, look.background);

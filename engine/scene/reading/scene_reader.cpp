@@ -85,6 +85,11 @@ SceneDef read_scene(Config& config) {
       output->complain("samples", "samples: must be 1, 2, 4 or 8");
     scene.output.energy = output->boolean(
         {"energy", "", "kinetic, elastic and gravitational energy of each body, each frame, in profile.json"}, false);
+    scene.output.passes = output->words<PicturePass>(
+        {"passes", "", "pictures in numbers beside those of the film, for compositors: passes/NAME/NNNNNN.exr"});
+    std::ranges::sort(scene.output.passes);
+    const auto [rest, end] = std::ranges::unique(scene.output.passes);
+    scene.output.passes.erase(rest, end);
   }
   scene.sweep_points = read_sweep(root).points();
   return scene;
