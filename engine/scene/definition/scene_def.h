@@ -168,6 +168,7 @@ struct BodyContactDef {
   std::optional<std::vector<std::string>> meets;
   FilePlace meets_place;  // of `meets` in the file, for messages once all bodies are known
   bool self = true;       // whether it touches itself
+  bool skin = false;      // whether the drawn skin touches colliders in the stead of the elements
   double friction = 0.5;  // its share of the coefficient of Coulomb's law between it and another body
 };
 
