@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/film_run.h"
 #include "app/solvers.h"
 #include "app/verbs.h"
 #include "base/console.h"
@@ -36,7 +37,7 @@ struct Checked {
 };
 
 Checked read_all(const CheckCommand& command) {
-  const SceneSource source = scene_source(command.scene);
+  const SceneSource source = opened_scene(command.scene, command.json);
   Checked checked{Script::load(source, assets_folder(), command.settings), {}, {}, {}};
   const SceneDef& scene = checked.script.scene();
   if (scene.sweep_points > 0 && !checked.script.is_replay()) {

@@ -34,8 +34,8 @@ struct DrawCommand {
   DrawPlan plan;
   std::vector<std::string> runs;
   std::string run, scene, out, still;
-  std::string field, range, reference;  // short forms of settings
-  std::vector<std::string> passes;      // the same
+  std::string size, field, range, reference;  // short forms of settings
+  std::vector<std::string> passes;            // the same
   std::optional<std::size_t> frame, index;
   std::optional<double> rate;
   int of = 1, jobs = 1;
@@ -221,6 +221,7 @@ void add_short_forms(DrawCommand& command) {
   if (!range.empty()) settings.push_back("field.range=" + (numbers ? "[" + range + "]" : quoted(range)));
   if (!command.reference.empty()) settings.push_back("field.reference=" + quoted(command.reference));
   std::vector<std::string>& all = command.plan.settings;
+  if (!command.size.empty()) settings.push_back(size_setting(command.size, all));
   all.insert(all.begin(), settings.begin(), settings.end());
   ask_for_passes(command.passes, all);
 }
@@ -298,6 +299,7 @@ void add_options(Verb& verb, DrawCommand& command) {
   verb.option("--set", plan.settings,
               "path=value over the run's, of what is seen: camera, look, output, colours; may be repeated")
       .repeatable();
+  add_size_option(verb, command.size, "the run's");
   verb.option("--field", command.field, "show this in colours: " + word_list(all_names<FieldQuantity>()))
       .one_of(all_names<FieldQuantity>());
   verb.option("--range", command.range, "LOW,HIGH of the colours, or usual, or film: that of the whole film [film]");

@@ -20,6 +20,7 @@
 #include "output/files/whole_file.h"
 #include "output/pages/run_page.h"
 #include "output/run/run_record.h"
+#include "scene/reading/model_scene.h"
 #include "scene/replay/script_trial.h"
 
 namespace supple {
@@ -189,6 +190,7 @@ bool say_verdict(const FilmCommand& command, const StateVerifier& verifier, int 
 void add_film_options(Verb& verb, FilmCommand& command) {
   FilmPlan& plan = command.plan;
   verb.option("--out", plan.out, "folder for the results [out/NAME]");
+  add_size_option(verb, plan.size, "the scene's");
   verb.option("--frames", plan.frames, "length of the film, over the scene's").between(1, 1000000);
   verb.option("--threads", plan.threads, "threads of the solver [all cores]; results do not depend on it")
       .between(1, 256);
@@ -235,6 +237,13 @@ void add_gl_option(Verb& verb, GlChoice& gl) {
       .one_of(all_names<GlChoice>());
 }
 
+void add_size_option(Verb& verb, std::string& size, const std::string& usual) {
+  verb.option("--size", size,
+              "of the pictures: portrait, square, 720p, 1080p, 4k or WIDTHxHEIGHT; the camera frames the bodies for "
+              "it [" +
+                  usual + "]");
+}
+
 void add_cache_option(Verb& verb, bool& cache) {
   verb.flag(
       "--no-cache", [&cache] { cache = false; }, "make meshes and skins again; keep none in the user's cache folder");
@@ -265,9 +274,19 @@ void ask_for_passes(const std::vector<std::string>& passes, std::vector<std::str
     settings.insert(settings.begin(), fmt::format("output.passes=[\"{}\"]", fmt::join(passes, "\", \"")));
 }
 
-void take_standard_input(FilmPlan& plan) {
-  if (plan.scene != "-") return;
-  SceneSource source = scene_source(plan.scene);
+SceneSource opened_scene(const std::string& name, bool quiet) {
+  SceneSource source = scene_source(name);
+  if (source.text || !is_model(source.path)) return source;
+  ModelScene scene = model_scene(source.path);
+  for (const std::string& note : scene.notes)
+    if (!quiet) say(stderr, fmt::format("note: {}: {}\n", source.path.string(), note));
+  source.text = std::move(scene.text);
+  return source;
+}
+
+void take_scene(FilmPlan& plan) {
+  SceneSource source = opened_scene(plan.scene, plan.quiet);
+  if (!source.text) return;
   plan.scene = source.path.string();
   plan.scene_text = std::move(source.text);
 }
@@ -294,7 +313,7 @@ void add_film(Verb& verb, const FilmArgument& argument, const std::vector<std::s
             "starts anew after a run that was killed")
       .excludes({"--no-video", "--no-images", "--checkpoint-every"});
   verb.runs([command, words] {
-    take_standard_input(command->plan);
+    take_scene(command->plan);
     ask_for_passes(command->passes, command->plan.settings);
     return run_film(*command, words);
   });
@@ -317,7 +336,8 @@ int run_film(const FilmCommand& command, const std::vector<std::string>& words, 
   say_place(plan, start.place);
   say_coding(plan, scene);
   catch_interrupts();
-  find_framing(plan, start, all_solvers(), film);
+  const std::string framing = find_framing(plan, start, all_solvers(), film);
+  if (!plan.quiet && !framing.empty()) say(stderr, framing);
   const RunFolder folder = open_folder(start, film);
   if (!plan.quiet && plan.pictures == FilmPictures::all && !plan.film_only)
     say(stderr, fmt::format("frames appear in {}\n", folder.frames().string()));

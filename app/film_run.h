@@ -27,6 +27,9 @@ void add_film_options(Verb& verb, FilmCommand& command);
 void add_gl_option(Verb& verb, GlChoice& gl);
 void add_cache_option(Verb& verb, bool& cache);
 
+// Adds the option that chooses the pictures' size. usual: the size without it, in words.
+void add_size_option(Verb& verb, std::string& size, const std::string& usual);
+
 // Adds the options of a film's file.
 void add_coding_options(Verb& verb, FilmCoding& coding);
 
@@ -37,8 +40,12 @@ void ask_for_passes(const std::vector<std::string>& passes, std::vector<std::str
 // Prints warnings of the scene, and the notes from reading meshes.
 void say_remarks(const FilmPlan& plan, const LoadedFilm& film);
 
-// Reads the scene from standard input where the plan names "-". Throws InputError.
-void take_standard_input(FilmPlan& plan);
+// Opens a scene by the name that the command line gives. The text of one that is not in a file is read, or made of a
+// model, whose notes are printed unless this should be quiet. Throws InputError.
+SceneSource opened_scene(const std::string& name, bool quiet);
+
+// Gives the plan the text of a scene that is not in a file. Throws InputError.
+void take_scene(FilmPlan& plan);
 
 // Makes a verb that films what its argument names. words: the command line with which the program was called.
 struct FilmArgument {

@@ -14,6 +14,8 @@
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "base/trace.h"
+#include "film/pictures/camera.h"
+#include "film/plan/preview.h"
 #include "film/plan/shipped_files.h"
 #include "film/rough_motion.h"
 #include "live/gate.h"
@@ -25,26 +27,19 @@ namespace {
 struct LiveCommand {
   FilmPlan plan;
   LiveAddress address;
-  std::string size;    // WIDTHxHEIGHT; empty: the scene's, made smaller
   std::string record;  // file of the replay; empty: none
   bool paused = false;
 };
 
-// Returns the settings of the pictures' size. Pictures of a page are smaller than those of films, so that they are
-// drawn in time.
+// Returns the settings of the pictures' size where the command asks for none. Pictures of a page are smaller than those
+// of films, so that they are drawn in time.
 std::vector<std::string> size_settings(const LiveCommand& command, const OutputDef& output) {
-  int width = output.width, height = output.height;
-  if (command.size.empty()) {
-    constexpr int most_pixels = 960;
-    const double smaller = std::min(1.0, double(most_pixels) / std::max(width, height));
-    width = 2 * static_cast<int>(0.5 * smaller * width + 0.5);
-    height = 2 * static_cast<int>(0.5 * smaller * height + 0.5);
-  } else {
-    int read = 0;
-    if (std::sscanf(command.size.c_str(), "%dx%d%n", &width, &height, &read) != 2 || read != std::ssize(command.size))
-      throw InputError("--size " + command.size, "wants WIDTHxHEIGHT, such as 960x540");
-  }
-  return {fmt::format("output.width={}", width), fmt::format("output.height={}", height)};
+  if (!command.plan.size.empty()) return {};
+  constexpr int most_pixels = 960;
+  const double smaller = std::min(1.0, double(most_pixels) / std::max(output.width, output.height));
+  const int width = 2 * static_cast<int>(0.5 * smaller * output.width + 0.5);
+  const int height = 2 * static_cast<int>(0.5 * smaller * output.height + 0.5);
+  return picture_settings(output, width, height);
 }
 
 // Loads the scene with the size of the page's pictures, which its replay does not have.
@@ -84,7 +79,8 @@ int run(LiveCommand command, const std::vector<std::string>& words) {
   catch_interrupts();
   FilmStart start;
   start.repeated = repeated_cuts(film.world.script().session(), names_of(film.world.bodies()));
-  find_framing(plan, start, all_solvers(), film);
+  // What is done on the page decides where bodies go, so that only a camera that asks for it knows their motion.
+  if (wants_motion(film.world.scene())) (void)find_framing(plan, start, all_solvers(), film);
   LiveDesk desk(plan.gl, shaders_folder());
   LiveServer server(desk, command.address, assets_folder() / "live");
   ReplayKeeper keeper(source_of(plan), plan.settings, command.record);
@@ -126,7 +122,7 @@ void add_live(CommandLine& line) {
   verb.option("--port", command->address.port, "of the page [one that is free]").between(1, 65535);
   verb.option("--listen", command->address.address,
               "address to listen to, over 127.0.0.1: others can then see the page who know its whole address");
-  verb.option("--size", command->size, "WIDTHxHEIGHT of the pictures [the scene's, at most 960 pixels]");
+  add_size_option(verb, plan.size, "the scene's, at most 960 pixels");
   verb.flag("--paused", command->paused, "wait before the first frame");
   verb.option("--threads", plan.threads, "threads of the solver [all cores but one]; results do not depend on it")
       .between(1, 256);
@@ -136,7 +132,7 @@ void add_live(CommandLine& line) {
   add_cache_option(verb, plan.cache);
   verb.flag("--quiet", plan.quiet, "say the address, and nothing but errors and warnings of what was not saved");
   verb.runs([command, words] {
-    take_standard_input(command->plan);
+    if (command->plan.scene == "-") take_scene(command->plan);
     return run(*command, words);
   });
 }

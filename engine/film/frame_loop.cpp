@@ -160,7 +160,7 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
       errors_(film.world, solvers, threads_) {
   if (plan.pictures != FilmPictures::none) {
     drawn_.emplace(world_.script(), world_.bodies(), std::move(film.drawn), world_.colliders(), caption_font());
-    if (film.info.framed) drawn_->frame_motion(*film.info.framed);
+    if (!film.info.framed.empty()) drawn_->frame_motion(film.info.framed);
   }
   world_.start(solvers.steps, &threads_);
   const int first = start.kept_frames();

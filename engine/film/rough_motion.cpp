@@ -1,104 +1,67 @@
 #include "film/rough_motion.h"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
+#include <algorithm>
+#include <limits>
 
-#include "base/error.h"
-#include "output/files/obj_file.h"
-#include "output/motion/point_cache.h"
+#include "base/timing.h"
 #include "output/run/run_record.h"
 
 namespace supple {
 namespace {
 
-constexpr double air = 0.02;  // room around the box, over its diagonal, because finer bodies move a little differently
+constexpr PassEffort whole_film = {std::numeric_limits<long long>::max(), false, true};
+constexpr PassEffort few_seconds = {400'000, true, true};
 
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    const char* given = std::getenv("TMPDIR");
-    const std::filesystem::path place = given != nullptr && *given != '\0' ? given : "/tmp";
-    std::string name = (place / "supple-first-pass-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr)
-      throw RunError(
-          fmt::format("{}: the camera's first pass cannot make a folder there: {}; set TMPDIR to a folder "
-                      "that can be written",
-                      place.string(), std::strerror(errno)));
-    path = name;
+bool changes_camera_at_all(const Script& script) {
+  for (int frame = 0; frame < script.scene().frames; ++frame) {
+    for (const TimedChange* change : script.at_work(frame))
+      if (change->path.starts_with("camera")) return true;
   }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  std::filesystem::path path;
-};
-
-// Returns the plan of the first pass: the same film, coarse, without pictures and without anything that is asked for
-// beside them.
-FilmPlan first_pass(const FilmPlan& plan, const std::filesystem::path& folder) {
-  FilmPlan rough;
-  rough.scene = plan.scene;
-  rough.scene_text = plan.scene_text;
-  rough.sweep_point = plan.sweep_point;
-  rough.settings = plan.settings;
-  rough.frames = plan.frames;
-  rough.seed = plan.seed;
-  rough.threads = plan.threads;
-  rough.cache = plan.cache;
-  rough.out = folder.string();
-  rough.rough = rough.force = rough.quiet = true;
-  rough.pictures = FilmPictures::none;
-  rough.video = false;
-  rough.checkpoint_every = 0;
-  return rough;
+  return false;
 }
 
-Bounds rough_motion(const FilmPlan& plan, const FilmSolvers& solvers, const LoadedFilm& whole) {
-  const Zone zone("first pass");
-  const ScratchFolder scratch;
-  const FilmPlan rough = first_pass(plan, scratch.path);
-  LoadedFilm film = load_film(rough, {});
-  build_models(rough, film);
-  FilmStart start = check_film(rough, film);
-  const RunFolder folder = open_folder(start, film);
-  (void)make_film(rough, film, start, folder, solvers);  // a pass that fails still gives the frames before its failure
-  Bounds box;
-  const auto include = [&box](const Positions& points) {
-    box.include(bounds_of(points).lower);
-    box.include(bounds_of(points).upper);
-  };
-  for (const Body& body : film.world.bodies()) {
-    const Positions& rest = body.description.mesh.rest;
-    include(rest);
-    PointCacheReader motion(folder.motion(body.def.name));
-    for (int frame = 0; frame < motion.frames(); ++frame)
-      include(motion.frame(frame).rowwise() + motion_origin(rest).transpose());
-  }
-  // Coarse bodies may lack the tips of ears and tails, so the box also contains the real bodies at rest.
-  for (const Body& body : whole.world.bodies()) include(body.description.mesh.rest);
-  for (const DrawnBody& body : whole.drawn) {
-    if (body.skin.rest.points.rows() > 0) include(body.skin.rest.points);
-  }
-  const Vec3 more = Vec3::Constant(air * box.diagonal());
-  box.include(box.lower - more);
-  box.include(box.upper + more);
-  return box;
+// Tells whether the program decides what the camera frames.
+bool is_left_open(const Script& script) {
+  const CameraDef& camera = script.scene().camera;
+  return camera.frames == Framed::automatic && !camera.is_placed() && !changes_camera_at_all(script);
+}
+
+std::string frames_text(const RoughPass& pass) {
+  const int whole = pass.film.world.scene().frames;
+  return pass.frames == whole ? fmt::format("all {} frames", whole)
+                              : fmt::format("{} of {} frames", pass.frames, whole);
 }
 
 }  // namespace
 
-void find_framing(const FilmPlan& plan, const FilmStart& start, const FilmSolvers& solvers, LoadedFilm& film) {
-  const bool asked = film.world.script().scene().camera.frames == Framed::film && plan.pictures != FilmPictures::none;
-  if (!asked) return;
-  if (start.kept_frames() > 0) film.info.framed = framed_in(read_run(start.place.path).info_json);
-  if (!film.info.framed) film.info.framed = rough_motion(plan, solvers, film);
+bool leaves_picture(const RoughPass& pass, DrawnFilm& drawn) {
+  if (!is_left_open(pass.film.world.script())) return false;
+  const auto is_cut = [](const BodyRow& body) { return body.in_picture && *body.in_picture < 1; };
+  return std::ranges::any_of(rows_of(pass, drawn),
+                             [&](const FrameRow& row) { return std::ranges::any_of(row.bodies, is_cut); });
+}
+
+std::string find_framing(const FilmPlan& plan, const FilmStart& start, const FilmSolvers& solvers, LoadedFilm& film) {
+  const Script& script = film.world.script();
+  const bool asked = wants_motion(script.scene()), open = is_left_open(script);
+  if (plan.pictures == FilmPictures::none || (!asked && !open)) return "";
+  if (start.kept_frames() > 0) {
+    film.info.framed = framed_in(read_run(start.place.path).info_json);
+    if (!asked || !film.info.framed.empty()) return "";
+  }
+  const Stopwatch watch;
+  const RoughPass pass = rough_pass(plan, solvers, asked ? whole_film : few_seconds);
+  if (pass.motion.empty()) return "";  // the film itself will say why its first step fails
+  if (!asked) {
+    DrawnFilm drawn = drawn_pass(pass);
+    if (!leaves_picture(pass, drawn)) return "";
+  }
+  film.info.framed = outermost_points(pass, film);
+  return fmt::format("the camera shows the bodies' whole motion{}: a rough first pass of {} found it in {:.1f} s\n",
+                     asked ? "" : ", which leaves the picture of the start", frames_text(pass),
+                     watch.elapsed_ms() / 1000);
 }
 
 }  // namespace supple

@@ -1,14 +1,19 @@
-// Finds where a camera that frames a whole film stands before the film has been made: by a rough first pass, which
-// simulates the scene with meshes as coarse as can be. The box that it finds is kept in run.json, so that the film can
-// be resumed, and drawn again, with the same camera.
+// Finds what a camera has in view that frames the bodies' whole motion, before the film has been made: by a rough first
+// pass. What it finds is kept in run.json, so that the film can be resumed, and drawn again, with the same camera.
 #pragma once
 
 #include "film/film.h"
+#include "film/rough_pass.h"
 
 namespace supple {
 
-// Finds the box of the bodies' motion, where the scene's camera asks for it and pictures are made. A film that is
-// resumed takes the box that it was begun with. Throws InputError and RunError.
-void find_framing(const FilmPlan& plan, const FilmStart& start, const FilmSolvers& solvers, LoadedFilm& film);
+// Finds the outermost points of the motion, where the camera asks for it, or where nothing places the camera and the
+// bodies leave the picture of the start, and where pictures are made. A film that is resumed takes the points that it
+// was begun with. Returns what is to be said about it, which is often nothing. Throws InputError and RunError.
+std::string find_framing(const FilmPlan& plan, const FilmStart& start, const FilmSolvers& solvers, LoadedFilm& film);
+
+// Tells whether a scene leaves to the program what its camera frames, and a body is not whole in a picture of the pass
+// that shows the start.
+bool leaves_picture(const RoughPass& pass, DrawnFilm& drawn);
 
 }  // namespace supple

@@ -117,7 +117,9 @@ struct Camera {
 struct Stage {
   Backdrop backdrop = Backdrop::ground;
   std::vector<DrawMesh> meshes;
-  std::optional<Bounds> motion;  // of all bodies over the film, which cameras frame in place of their boxes at rest [m]
+  // The outermost points of all bodies over the film, which cameras frame in place of the bodies' boxes at rest; empty:
+  // not known [m]
+  std::vector<Vec3> motion;
   int width = 1280, height = 720;  // pixels
   int samples = 4;                 // samples a pixel, for antialiasing
   StageColors colors;

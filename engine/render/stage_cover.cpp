@@ -63,10 +63,7 @@ StageCover::StageCover(const Stage& stage, const Vec3& to_light)
   right_ = look.block<1, 3>(0, 0).transpose();
   up_ = look.block<1, 3>(1, 0).transpose();
   Bounds lit = bounds_;
-  if (stage.motion) {
-    lit.include(stage.motion->lower);
-    lit.include(stage.motion->upper);
-  }
+  for (const Vec3& point : stage.motion) lit.include(point);
   rest_.light_center = lit.center();
   rest_.light_radius = 0.5 * lit.diagonal() + largest_body_;
   rest_.shadow_center = rest_.shade_center = bounds_.center();

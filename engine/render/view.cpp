@@ -83,6 +83,48 @@ Camera framing(const Bounds& box, const Vec3& direction, double fov_deg, double 
 
 namespace {
 
+// Describes where the eye must be along one side of the picture, so that all points lie between the two planes through
+// the eye that bound it there: eye . side lies between `least` and `most` where the eye is as near as can be.
+class SideLimits {
+ public:
+  // side: to the right or up in the picture. low, high: the tangents of the angles at both ends.
+  SideLimits(std::span<const Vec3> points, const Vec3& side, const Vec3& back, double low, double high)
+      : low_(low), high_(high) {
+    for (const Vec3& p : points) {
+      above_ = std::max(above_, p.dot(side) + high * p.dot(back));
+      below_ = std::max(below_, low * p.dot(back) - p.dot(side));
+    }
+  }
+  // Returns the least place of the eye along `back`.
+  double nearest() const { return (above_ + below_) / (low_ + high_); }
+  // Returns the place of the eye along the side, in the middle of where it may be, from a place along `back`.
+  double middle(double back) const { return 0.5 * (above_ - high_ * back + low_ * back - below_); }
+
+ private:
+  double low_, high_;
+  double above_ = -1e300, below_ = -1e300;
+};
+
+}  // namespace
+
+Camera framing(std::span<const Vec3> points, const Vec3& direction, double fov_deg, double margin, double aspect,
+               double kept_below) {
+  const double high = std::tan(fov_deg * std::numbers::pi / 360) / margin, wide = high * aspect;
+  const Vec3 right = Vec3::UnitY().cross(direction).normalized(), up = direction.cross(right);
+  const SideLimits across(points, right, direction, wide, wide);
+  const SideLimits upright(points, up, direction, high * (1 - 2 * kept_below), high);
+  const double back = std::max(across.nearest(), upright.nearest());
+  Camera camera;
+  camera.fov_deg = fov_deg;
+  camera.eye = back * direction + across.middle(back) * right + upright.middle(back) * up;
+  double depth = 0;
+  for (const Vec3& p : points) depth += (camera.eye - p).dot(direction) / static_cast<double>(points.size());
+  camera.target = camera.eye - depth * direction;
+  return camera;
+}
+
+namespace {
+
 // Gives vertices with the same number the sum of their normals.
 void unite_normals(const std::vector<std::uint32_t>& smooth, float* normals) {
   std::vector<std::array<float, 3>> sums(1 + std::size_t(*std::ranges::max_element(smooth)));

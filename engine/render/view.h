@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <span>
 
 #include "render/draw_list.h"
 
@@ -10,6 +11,11 @@ namespace supple {
 // Returns a camera that has all of the box in view, with some space around it (margin: 1 is none). direction: the
 // direction of the view, of length one, from what is seen to the eye. aspect: width over height of the picture.
 Camera framing(const Bounds& box, const Vec3& direction, double fov_deg, double margin, double aspect);
+
+// Returns the nearest camera that has all of these points in view, with some space around them. The arguments are those
+// of the function above. kept_below: the share of the picture's height that stays free below them.
+Camera framing(std::span<const Vec3> points, const Vec3& direction, double fov_deg, double margin, double aspect,
+               double kept_below);
 
 // Maps world to eye coordinates: the eye looks at the target, and up is y.
 Eigen::Matrix4f look_at(const Vec3& eye, const Vec3& target);

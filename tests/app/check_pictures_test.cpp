@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "app/solvers.h"
 #include "film/plan/shipped_files.h"
@@ -41,7 +42,8 @@ std::string checked(const std::filesystem::path& folder, const std::string& came
 
 TEST(CheckPictures, NameTheBodyThatLeavesThemAndTheFirstFrame) {
   const test::TemporaryFolder folder;
-  const std::string out = checked(folder.path, "");
+  const std::string still = "[camera]\nframes = \"start\"\n";
+  const std::string out = checked(folder.path, still);
   EXPECT_NE(out.find("warning: s.toml: in the rough first pass of the film, body 'rising' is out of the picture in "),
             std::string::npos)
       << out;
@@ -56,7 +58,33 @@ TEST(CheckPictures, NameTheBodyThatLeavesThemAndTheFirstFrame) {
   EXPECT_NE(rendered.err.find(words), std::string::npos) << words << '\n' << rendered.err;
 
   EXPECT_EQ(checked(folder.path, "[camera]\nframes = \"film\"\n").find("rough"), std::string::npos);
-  EXPECT_EQ(checked(folder.path, "", {"--set", "body.rising.velocity=[0, 0, 0]"}).find("rough"), std::string::npos);
+  EXPECT_EQ(checked(folder.path, still, {"--set", "body.rising.velocity=[0, 0, 0]"}).find("rough"), std::string::npos);
+}
+
+TEST(CheckPictures, ShowTheWholeMotionWhereNothingPlacesTheCamera) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(checked(folder.path, "").find("rough"), std::string::npos);
+  const std::vector<std::string> words = {"render", "s.toml", "--no-video", "--size", "96x54", "--out", "a"};
+  const test::Result film = run(folder.path, words);
+  EXPECT_NE(film.err.find("the camera shows the bodies' whole motion, which leaves the picture of the start: a rough "
+                          "first pass of all 40 frames found it in "),
+            std::string::npos)
+      << film.err;
+  EXPECT_EQ(film.err.find("out of the picture"), std::string::npos) << film.err;
+  for (const auto& row : test::profile_of(folder.path / "a")["frames"])
+    for (const auto& body : row["bodies"]) EXPECT_EQ(body["in_picture"].get<double>(), 1);
+
+  // What stays in the picture of the start keeps that picture, and so does what the scene places itself.
+  const auto bytes = [&](const std::string& name, const std::string& camera, const std::string& velocity) {
+    std::ofstream(folder.path / "s.toml") << boxes << camera;
+    const test::Result made = run(folder.path, {"render", "s.toml", "--no-video", "--size", "96x54", "--out", name,
+                                                "--frames", "12", "--set", "body.rising.velocity=" + velocity});
+    EXPECT_EQ(made.err.find("the camera shows"), std::string::npos) << made.err;
+    return test::read_file(folder.path / name / "frames" / "000011.png");
+  };
+  EXPECT_EQ(bytes("b", "", "[0, 0, 0]"), bytes("c", "[camera]\nframes = \"start\"\n", "[0, 0, 0]"));
+  const std::string placed = "[camera]\nposition = [0, 1, 3]\ntarget = [0, 0.4, 0]\n";
+  EXPECT_EQ(bytes("d", placed, "[0, 4, 0]"), bytes("e", placed + "frames = \"start\"\n", "[0, 4, 0]"));
 }
 
 TEST(CheckPictures, SayThatNoneShowsABody) {

@@ -376,7 +376,9 @@ TEST_F(DrawnRun, HasTheCameraThatTheRunFoundByAFirstPass) {
   ASSERT_EQ(made.status, 0) << made.err;
   EXPECT_NE(picture("whole", 5), picture("run", 5));
   const auto framed = nlohmann::json::parse(read_file(path("whole") / "run.json"))["framed"];
-  EXPECT_LT(framed[0][1].get<double>(), 0.25) << "the sheet falls";
+  double lowest = 1;
+  for (const auto& point : framed) lowest = std::min(lowest, point[1].get<double>());
+  EXPECT_LT(lowest, 0.25) << "the sheet falls";
   ASSERT_EQ(run(folder_->path, {"draw", "whole", "--quiet"}).status, 0);
   for (const int frame : {0, 5, 8}) EXPECT_EQ(picture("whole-drawn", frame), picture("whole", frame)) << frame;
   // A longer film goes on with the camera of its beginning.

@@ -58,6 +58,80 @@ TEST(Camera, FramesAnyBoxFromAnyDirectionAndNoWiderThanItMust) {
   }
 }
 
+// Returns the largest distances from the middle in the picture, to the sides and up or down, in half its sides.
+Eigen::Vector2d farthest_of(const Camera& camera, const std::vector<Vec3>& points, double aspect) {
+  Bounds box;
+  for (const Vec3& point : points) box.include(point);
+  const Eigen::Matrix4d view = view_matrix(camera, aspect, box.center(), box.diagonal()).cast<double>();
+  Eigen::Vector2d farthest(0, 0);
+  for (const Vec3& point : points) {
+    const Eigen::Vector4d p = view * point.homogeneous();
+    farthest = farthest.cwiseMax((p.head<2>() / p.w()).cwiseAbs());
+  }
+  return farthest;
+}
+
+TEST(Camera, FramesPointsAsLargeAsThePictureAllows) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int sample = 0; sample < 200; ++sample) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 30; ++i) points.emplace_back(3 * uniform(random), uniform(random), 2 * uniform(random));
+    const double azimuth = 3 * uniform(random), elevation = 1.4 * uniform(random), aspect = 1.5 + uniform(random);
+    const Vec3 direction(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                         std::cos(azimuth) * std::cos(elevation));
+    const Camera camera = framing(points, direction, 35, 1, aspect, 0);
+    EXPECT_NEAR(farthest_of(camera, points, aspect).maxCoeff(), 1, 1e-4);
+    EXPECT_LT((camera.eye - camera.target).normalized().cross(direction).norm(), 1e-12);
+    EXPECT_LT(farthest_of(framing(points, direction, 35, 1.2, aspect, 0.06), points, aspect).maxCoeff(), 1 / 1.19);
+  }
+}
+
+TEST(Camera, ShowsTheWholeMotionOfAStageThatKnowsItUnlessTheSceneSaysOtherwise) {
+  Stage stage = stage_with_cube();
+  const Stage still = stage;
+  stage.motion = {Vec3(-0.5, 0, -0.5), Vec3(0.5, 3, 0.5), Vec3(4, 0, 0)};
+  const auto eye = [](const std::string& keys, const Stage& on) {
+    return camera_at(test::scene_of(cube + keys), on, 0).eye;
+  };
+  const SceneDef open = test::scene_of(cube);
+  EXPECT_LE(farthest_of(camera_at(open, stage, 0), stage.motion, 16.0 / 9).maxCoeff(), 1);
+  EXPECT_GT(farthest_of(camera_at(open, still, 0), stage.motion, 16.0 / 9).maxCoeff(), 1);
+  EXPECT_EQ(eye("[camera]\nframes = \"film\"\n", stage), eye("", stage));
+  for (const char* keys : {"[camera]\nframes = \"start\"\n", "[camera]\ndistance = 4\n",
+                           "[camera]\nposition = [0, 1, 3]\n", "[camera]\nkeys = [{ t = 1, azimuth = 3 }]\n"})
+    EXPECT_EQ(eye(keys, stage), eye(keys, still)) << keys;
+}
+
+TEST(Camera, KeepsInANarrowerPictureWhatAWideOneShowsToTheSides) {
+  const std::string placed = "[camera]\nposition = [0, 2.5, 6]\ntarget = [0, 2.5, 0]\n";
+  Stage stage = stage_with_cube();
+  stage.motion = {Vec3(-2, 2, 0), Vec3(2, 3, 0)};
+  const auto fov = [&](const std::string& output, int width, int height) {
+    stage.width = width;
+    stage.height = height;
+    return camera_at(test::scene_of(cube + placed + output), stage, 0).fov_deg;
+  };
+  EXPECT_EQ(fov("", 1280, 720), 30);
+  EXPECT_EQ(fov("[output]\nwidth = 1080\nheight = 1920\n", 1080, 1920), 30) << "a shape of the scene's own";
+  EXPECT_EQ(fov("[output]\nsize = \"4k\"\n", 3840, 2160), 30) << "the same shape";
+  const SceneDef portrait = test::scene_of(cube + placed + "[output]\nsize = \"portrait\"\n");
+  EXPECT_EQ(portrait.output.width, 1080);
+  EXPECT_EQ(portrait.output.height, 1920);
+  EXPECT_GT(fov("[output]\nsize = \"portrait\"\n", 1080, 1920), 60);
+  const Eigen::Vector2d farthest = farthest_of(camera_at(portrait, stage, 0), stage.motion, 1080.0 / 1920);
+  EXPECT_NEAR(farthest.x(), 1 / 1.05, 1e-4);
+}
+
+TEST(Camera, RefusesASizeThatIsNone) {
+  for (const char* size : {"12", "640x361", "landscape", "9000x100", "64x48 "}) {
+    const std::vector<std::string> problems = test::problems_of(cube + "[output]\nsize = \"" + size + "\"\n");
+    ASSERT_EQ(problems.size(), 1u) << size;
+    EXPECT_NE(problems[0].find("is none of portrait (1080x1920), square (1080x1080)"), std::string::npos)
+        << problems[0];
+  }
+}
+
 TEST(Camera, HasTheGroundInViewBelowABodyThatWillFall) {
   const SceneDef falls = test::scene_of(cube);
   const SceneDef floats = test::scene_of("gravity = [0, 0, 0]\n" + cube);

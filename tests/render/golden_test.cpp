@@ -12,6 +12,7 @@
 #include <functional>
 #include <span>
 
+#include "base/motion_hull.h"
 #include "film/pictures/drawn_film.h"
 #include "film/redraw/split_screen.h"
 #include "output/files/obj_file.h"
@@ -84,7 +85,7 @@ Picture picture_of(const Shot& shot, const Settings& more = {}) {
               motion[b] = in_input_order(film.models[b], to.x);
               forces[b] = contact_forces(film.models[b], w, to.x);
             });
-  if (film.scene.camera.frames == Framed::film) drawn.frame_motion(shot.motion);
+  if (film.scene.camera.frames == Framed::film) drawn.frame_motion(corners_of(shot.motion));
   FramePose pose{shot.frames - 1, shot.frames / film.scene.fps, {}, {}};
   for (const Positions& body : motion) pose.motion.push_back(&body);
   for (const Positions& body : before) pose.before.push_back(&body);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/motion_hull.h"
 #include "render/view.h"
 
 namespace supple {
@@ -53,17 +54,82 @@ std::size_t followed_mesh(const SceneDef& scene) {
 
 bool will_fall(const SceneDef& scene, const BodyDef& body) { return body.handles.empty() && scene.gravity.y() < 0; }
 
+// Tells whether the camera shows the bodies' whole motion, which the stage knows.
+bool frames_motion(const SceneDef& scene, const Stage& stage) {
+  if (stage.motion.empty()) return false;
+  const CameraDef& camera = scene.camera;
+  return camera.frames == Framed::film || (camera.frames == Framed::automatic && !camera.is_placed());
+}
+
+// Returns the points that bound the bodies' whole motion, and what else is framed.
+std::vector<Vec3> points_of_motion(const SceneDef& scene, const Stage& stage) {
+  std::vector<Vec3> points = stage.motion;
+  for (std::size_t m = scene.bodies.size(); m < stage.meshes.size(); ++m) {
+    if (!stage.meshes[m].framed) continue;
+    for (const Vec3& corner : corners_of(stage.meshes[m].rest)) points.push_back(corner);
+  }
+  return points;
+}
+
+// Returns the camera at a distance at which all that it frames is in the picture.
+Camera framing_camera(const SceneDef& scene, const Stage& stage, const Vec3& direction, double fov) {
+  const bool motion = frames_motion(scene, stage);
+  // The outline of the whole motion is larger than the bodies are at any one time, so less air is enough.
+  const double margin = scene.camera.margin.value_or(motion ? 1.05 : 1.25);
+  // The legend may stand in the air around the bodies. Only where the air is too narrow, the bodies become smaller.
+  constexpr double least_air = 1.05;
+  const double narrower = std::min(1.0, margin * (1 - 2 * stage.kept_free) / least_air);
+  const double aspect = narrower * stage.width / stage.height;
+  if (!motion) return framing(framed_box(scene, stage), direction, fov, margin, aspect);
+  const std::vector<Vec3> points = points_of_motion(scene, stage);
+  // A camera that goes round the bodies frames their box, because its distance from an outline would waver.
+  if (scene.camera.moves()) return framing(box_around(points), direction, fov, margin, aspect);
+  const bool captions = std::ranges::any_of(stage.meshes, [](const DrawMesh& mesh) { return !mesh.label.empty(); });
+  constexpr double of_captions = 0.06;
+  return framing(points, direction, fov, margin, aspect, captions ? of_captions : 0);
+}
+
+// Returns what the camera shows of the bodies to either side, as the tangent of half an angle, in a picture whose sides
+// are at `most`; `most` itself where bodies or camera may move on.
+double shown_to_the_sides(const SceneDef& scene, const Stage& stage, const Camera& camera, double most) {
+  constexpr double air = 1.05;
+  if (stage.motion.empty() || scene.camera.moves() || !scene.camera.follow.empty()) return most;
+  const Eigen::Matrix4d to_eye = look_at(camera.eye, camera.target).cast<double>();
+  double shown = 0;
+  for (const Vec3& point : points_of_motion(scene, stage)) {
+    const Vec3 at = to_eye.topLeftCorner<3, 3>() * (point - camera.eye);
+    shown = at.z() < 0 ? std::max(shown, air * std::abs(at.x()) / -at.z()) : most;
+  }
+  return std::min(shown, most);
+}
+
+// Widens the view of a camera that the scene places, for pictures that are narrower than those for which it was placed:
+// what these showed of the bodies stays in the picture.
+void keep_sides(const SceneDef& scene, const Stage& stage, Camera& camera) {
+  const double aspect = static_cast<double>(stage.width) / stage.height, before = scene.output.aspect;
+  if (!is_at_fixed_distance(scene.camera) || before <= aspect) return;
+  const double high = std::tan(camera.fov_deg * std::numbers::pi / 360);
+  const double wide = shown_to_the_sides(scene, stage, camera, high * before);
+  camera.fov_deg = 360 / std::numbers::pi * std::atan(std::max(high, wide / aspect));
+}
+
 }  // namespace
+
+bool is_at_fixed_distance(const CameraDef& camera) {
+  return camera.position || camera.distance ||
+         std::ranges::any_of(camera.keys, [](const CameraKey& key) { return key.position || key.distance; });
+}
+
+bool wants_motion(const SceneDef& scene) {
+  const bool narrower = scene.output.aspect > static_cast<double>(scene.output.width) / scene.output.height;
+  return scene.camera.frames == Framed::film || (narrower && is_at_fixed_distance(scene.camera));
+}
 
 Bounds framed_box(const SceneDef& scene, const Stage& stage) {
   Bounds box;
-  if (stage.motion) {
-    box.include(stage.motion->lower);
-    box.include(stage.motion->upper);
-  }
   for (std::size_t m = 0; m < stage.meshes.size(); ++m) {
     const DrawMesh& mesh = stage.meshes[m];
-    if (!mesh.framed || (stage.motion && m < scene.bodies.size())) continue;
+    if (!mesh.framed) continue;
     box.include(mesh.rest.lower);
     box.include(mesh.rest.upper);
     const bool falls = m < scene.bodies.size() && will_fall(scene, scene.bodies[m]) && mesh.rest.lower.y() > 0;
@@ -83,7 +149,6 @@ std::optional<Followed> followed_at(const SceneDef& scene, const Stage& stage,
 Camera camera_at(const SceneDef& scene, const Stage& stage, double time,
                  const std::vector<std::vector<float>>& positions) {
   const CameraDef& def = scene.camera;
-  const Bounds box = framed_box(scene, stage);
   const double degree = std::numbers::pi / 180;
   const double azimuth =
       degree * (value_at(def, time, &CameraKey::azimuth_deg, def.azimuth_deg) + def.orbit_deg * time);
@@ -91,15 +156,12 @@ Camera camera_at(const SceneDef& scene, const Stage& stage, double time,
   const double fov = value_at(def, time, &CameraKey::fov_deg, def.fov_deg);
   const Vec3 direction(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
                        std::cos(azimuth) * std::cos(elevation));
-  // The legend may stand in the air around the bodies. Only where the air is too narrow, the bodies become smaller.
-  constexpr double least_air = 1.05;
-  const double narrower = std::min(1.0, def.margin * (1 - 2 * stage.kept_free) / least_air);
-  const double aspect = narrower * stage.width / stage.height;
-  Camera camera = framing(box, direction, fov, def.margin, aspect);
+  Camera camera = framing_camera(scene, stage, direction, fov);
   const double distance = (camera.eye - camera.target).norm();
   camera.target = value_at<Vec3>(def, time, &CameraKey::target, def.target.value_or(camera.target));
   camera.eye = camera.target + value_at(def, time, &CameraKey::distance, def.distance.value_or(distance)) * direction;
   camera.eye = value_at<Vec3>(def, time, &CameraKey::position, def.position.value_or(camera.eye));
+  keep_sides(scene, stage, camera);
   const std::optional<Followed> followed = followed_at(scene, stage, positions);
   if (!followed) return camera;
   const Vec3 center = stage.meshes[followed->mesh].rest.center() + followed->moved;

@@ -6,9 +6,17 @@
 
 namespace supple {
 
-// Returns the box that a camera frames [m]: colliders at the start, and the bodies' whole motion where the stage knows
-// it; otherwise the bodies at the start, and the ground below those that will fall on it.
+// Returns the box that a camera frames where nothing is known of the motion [m]: bodies and colliders at the start, and
+// the ground below those bodies that will fall on it.
 Bounds framed_box(const SceneDef& scene, const Stage& stage);
+
+// Tells whether the scene says how far the eye is from what it sees, so that other shapes of the picture show more or
+// less of that.
+bool is_at_fixed_distance(const CameraDef& camera);
+
+// Tells whether a scene asks for a camera that knows the bodies' whole motion: to frame it, or to keep it in a picture
+// that is narrower than the one for which the scene places its camera.
+bool wants_motion(const SceneDef& scene);
 
 // Returns the object that the camera follows, and how far it has moved. positions: the positions of each mesh, as in a
 // DrawList.

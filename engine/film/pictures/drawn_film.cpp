@@ -102,8 +102,8 @@ void DrawnFilm::include_in_field(const FramePose& pose, const CollisionSet& set,
   if (field_) field_->include(field_->values(pose, set, &threads));
 }
 
-void DrawnFilm::frame_motion(const Bounds& motion) {
-  stage_.motion = motion;
+void DrawnFilm::frame_motion(std::vector<Vec3> motion) {
+  stage_.motion = std::move(motion);
   stage_.first_camera = camera_at(start_, stage_, 0);
 }
 

@@ -56,8 +56,9 @@ class DrawnFilm {
   Eigen::Vector2d field_range() const { return field_->range(); }
   // Takes the legend off the pictures; the caller shows it. Must be called before the stage is used.
   void hide_legend();
-  // Makes cameras frame this box over the whole film [m]. Must be called before the stage is used.
-  void frame_motion(const Bounds& motion);
+  // Makes cameras frame these outermost points of the bodies' motion over the whole film [m]. Must be called before the
+  // stage is used.
+  void frame_motion(std::vector<Vec3> motion);
   // Gives the graph of times its scale, from all rows of the film. Must be called before the stage is used.
   void know_times(std::span<const FrameRow> rows);
 

@@ -27,6 +27,7 @@ struct FilmPlan {
   std::optional<std::string> scene_text;   // the text of the scene's file, which then need not exist
   std::optional<std::size_t> sweep_point;  // point of the scene's sweep; nothing: the scene as it stands
   std::vector<std::string> settings;       // path=value, in place of the scene's values
+  std::string size;                        // of the pictures, as output.size has it; empty: the scene's
   int frames = 0;                          // length of the film; 0: the scene's
   long long seed = -1;                     // of random start states; negative: the scene's
 

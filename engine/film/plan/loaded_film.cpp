@@ -13,6 +13,7 @@
 #include "film/plan/preview.h"
 #include "film/plan/shipped_files.h"
 #include "film/plan/slow_work_line.h"
+#include "scene/reading/picture_size.h"
 #include "scene/replay/script_trial.h"
 
 namespace supple {
@@ -123,8 +124,19 @@ LoadedFilm load_coarse(const FilmPlan& plan, const std::vector<std::string>& set
 
 }  // namespace
 
+std::string size_setting(const std::string& size, const std::vector<std::string>& settings) {
+  if (!picture_size(size)) throw InputError("--size " + size, "is none of " + picture_size_words());
+  for (const std::string& setting : settings) {
+    if (setting.starts_with("output.width=") || setting.starts_with("output.height=") ||
+        setting.starts_with("output.size="))
+      throw InputError("--set " + setting, "and --size " + size + " both say how large the pictures are");
+  }
+  return "output.size=" + size;
+}
+
 LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& command) {
   std::vector<std::string> settings = plan.settings;
+  if (!plan.size.empty()) settings.push_back(size_setting(plan.size, plan.settings));
   if (plan.frames > 0) settings.push_back(fmt::format("frames={}", plan.frames));
   if (plan.seed >= 0) settings.push_back(fmt::format("seed={}", plan.seed));
   return plan.preview || plan.rough ? load_coarse(plan, settings, command) : film_with(plan, settings, command);

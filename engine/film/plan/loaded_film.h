@@ -22,6 +22,9 @@ struct LoadedFilm {
 // Returns the scene of a plan as the reader takes it.
 SceneSource source_of(const FilmPlan& plan);
 
+// Returns the setting for --size, beside settings that may not say the size as well. Throws InputError.
+std::string size_setting(const std::string& size, const std::vector<std::string>& settings);
+
 // Reads the scene and its meshes. command: the command line with which the program was called. Throws InputError.
 LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& command);
 

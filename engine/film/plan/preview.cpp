@@ -63,9 +63,15 @@ std::string coarser(const SceneDef& scene, const BodyDef& body, double share) {
 
 }  // namespace
 
+std::vector<std::string> picture_settings(const OutputDef& output, int width, int height) {
+  // Where the scene has output.size, width and height tell the shape for which its camera was placed, and stay.
+  if (output.aspect > 0) return {fmt::format("output.size={}x{}", width, height)};
+  return {fmt::format("output.width={}", width), fmt::format("output.height={}", height)};
+}
+
 std::vector<std::string> preview_settings(const SceneDef& scene, double share) {
   const auto [width, height] = preview_size(scene.output);
-  std::vector<std::string> settings = {fmt::format("output.width={}", width), fmt::format("output.height={}", height)};
+  std::vector<std::string> settings = picture_settings(scene.output, width, height);
   for (const BodyDef& body : scene.bodies) {
     const std::string setting = share < 1 ? coarser(scene, body, share) : "";
     if (!setting.empty()) settings.push_back(setting);

@@ -14,4 +14,7 @@ namespace supple {
 // leaves the meshes as they are.
 std::vector<std::string> preview_settings(const SceneDef& scene, double share);
 
+// Returns the settings that give the pictures of a scene this size [pixels].
+std::vector<std::string> picture_settings(const OutputDef& output, int width, int height);
+
 }  // namespace supple

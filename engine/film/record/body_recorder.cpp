@@ -10,6 +10,7 @@
 #include "film/record/state_file.h"
 #include "output/files/obj_file.h"
 #include "scene/building/body.h"
+#include "sim/contact/find_contacts.h"
 #include "sim/measures/far_side.h"
 #include "sim/measures/fields.h"
 #include "sim/measures/measures.h"
@@ -143,7 +144,9 @@ void BodyRecorder::measure_errors() {
 void BodyRecorder::measure_contact() {
   const std::vector<Collider>& colliders = world_.colliders().colliders;
   const std::vector<ColliderMotion>& motions = moving().inputs().collider_motions;
-  const std::vector<double> depths = penetrations(colliders, motions, state().x, model().surface);
+  Positions touching = state().x;
+  if (const Positions drawn = drawn_offsets(model(), touching, nullptr); drawn.rows() > 0) touching += drawn;
+  const std::vector<double> depths = penetrations(colliders, motions, touching, model().surface);
   const std::vector<Vec3>& forces = moving().report().collider_forces;
   ContactRow& row = *row_->contact;
   for (std::size_t c = 0; c < colliders.size(); ++c) {

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/frame_time.h"
 #include "base/interrupts.h"
+#include "base/motion_hull.h"
 #include "base/text.h"
 #include "base/threads.h"
 #include "film/pictures/drawn_film.h"
@@ -38,6 +39,7 @@ constexpr std::array seen = {"title",
                              "look",
                              "field",
                              "text",
+                             "output.size",
                              "output.width",
                              "output.height",
                              "output.samples",
@@ -82,6 +84,11 @@ FilmPlan plan_of_run(const DrawPlan& plan, const Json& info) {
     throw InputError(film.scene, "the run's scene is no longer there; --scene FILE says where it is now");
   }
   for (const Json& setting : info["settings"]) film.settings.push_back(setting.get<std::string>());
+  // Width and height that are asked for now stand over the size by name that the run was given.
+  const bool sized = std::ranges::any_of(plan.settings, [](const std::string& setting) {
+    return setting.starts_with("output.width=") || setting.starts_with("output.height=");
+  });
+  if (sized) std::erase_if(film.settings, [](const std::string& one) { return one.starts_with("output.size="); });
   film.settings.insert(film.settings.end(), plan.settings.begin(), plan.settings.end());
   if (info.contains("sweep_point")) film.sweep_point = info["sweep_point"].get<std::size_t>();
   return film;
@@ -192,10 +199,11 @@ class Drawing {
     drawn_.know_times(drawing.rows);
     for (const FrameRow& row : drawing.rows) graphed_.push_back(graph_point(row));
     const bool field = scene().field.quantity != FieldQuantity::none && scene().field.range_by == FieldRange::film;
-    const bool camera = scene().camera.frames == Framed::film;
-    const std::optional<Bounds>& framed = drawing.film.info.framed;
-    if (camera && framed) drawn_.frame_motion(*framed);
-    if (field || (camera && !framed)) span_film(field, camera && !framed);
+    const std::vector<Vec3>& framed = drawing.film.info.framed;
+    const bool finds = framed.empty() && wants_motion(scene());
+    const bool shows = wants_motion(scene()) || scene().camera.frames == Framed::automatic;
+    if (!framed.empty() && shows) drawn_.frame_motion(framed);
+    if (field || finds) span_film(field, finds);
   }
 
   const Stage& stage() const { return drawn_.stage(); }
@@ -211,18 +219,15 @@ class Drawing {
   // Finds the range of the field and the box of the motion over all frames of the run, so that each picture has the
   // same colours and the same camera, whichever frames are drawn and in how many parts.
   void span_film(bool field, bool camera) {
-    Bounds box;
+    MotionHull hull;
     for (int frame = 0; frame < drawing_.frame_count && !interrupted(); ++frame) {
       enter(frame);
       load(frame);
       if (field) drawn_.include_in_field(pose(frame), world_.colliders(), threads_);
-      for (const Positions& body : motion_) {
-        box.include(bounds_of(body).lower);
-        box.include(bounds_of(body).upper);
-      }
+      for (const Positions& body : motion_) hull.include(body);
     }
     if (field) drawn_.settle_field();
-    if (camera) drawn_.frame_motion(box);
+    if (camera) drawn_.frame_motion(hull.points());
     rewind();
   }
 

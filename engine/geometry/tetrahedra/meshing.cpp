@@ -202,7 +202,7 @@ MadeMesh made_of_surface(const SurfaceBody& body, const WantedMesh& wanted, cons
   if (beyond > 0.1 * thinness.spacing) {
     made.notes.push_back(fmt::format(
         "the elements reach {:.2g} beyond the surface, in the file's units, so that they hold its thin or loose parts: "
-        "it bends as what is that much thicker does, and colliders touch the elements",
+        "it bends as what is that much thicker does, and colliders touch the elements, or with contact.skin the skin",
         beyond));
   }
   return made;

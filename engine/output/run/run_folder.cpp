@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/motion_hull.h"
 #include "output/files/json_text.h"
 #include "output/files/whole_file.h"
 
@@ -183,16 +184,16 @@ std::filesystem::path RunFolder::fields(const std::string& body, int frame) cons
   return fields() / fmt::format("{}-{:06}.vtu", body, frame);
 }
 
-std::optional<Bounds> framed_in(const std::string& info_json) {
+std::vector<Vec3> framed_in(const std::string& info_json) {
   const auto info = json_if_valid<nlohmann::ordered_json>(info_json);
-  if (!info.is_object() || !info.contains("framed")) return std::nullopt;
+  if (!info.is_object() || !info.contains("framed")) return {};
   try {
-    const auto corners = info["framed"].get<std::vector<std::vector<double>>>();
-    Bounds box;
-    for (const std::vector<double>& c : corners) box.include(Vec3(c.at(0), c.at(1), c.at(2)));
-    return box.empty() ? std::nullopt : std::optional(box);
+    std::vector<Vec3> points;
+    for (const auto& p : info["framed"].get<std::vector<std::vector<double>>>())
+      points.emplace_back(p.at(0), p.at(1), p.at(2));
+    return points.size() == 2 ? corners_of(box_around(points)) : points;  // older programs wrote a box
   } catch (const std::exception&) {
-    throw InputError("run.json", "is damaged: 'framed' is not two corners of a box");
+    throw InputError("run.json", "is damaged: 'framed' is not a list of points");
   }
 }
 
@@ -217,10 +218,7 @@ std::string info_json(const RunInfo& info) {
   json["scene_file"] = info.scene_file;
   if (info.scene_text) json["scene_text"] = *info.scene_text;
   if (info.preview) json["preview"] = true;
-  if (info.framed) {
-    const auto list = [](const Vec3& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
-    json["framed"] = {list(info.framed->lower), list(info.framed->upper)};
-  }
+  for (const Vec3& p : info.framed) json["framed"].push_back({p.x(), p.y(), p.z()});
   json["settings"] = info.settings;
   if (info.sweep_point) json["sweep_point"] = *info.sweep_point;
   json["scene"] = json_if_valid<nlohmann::ordered_json>(info.scene_json);

@@ -18,7 +18,7 @@ struct RunInfo {
   std::vector<std::string> command;       // the command line
   std::string scene_file;                 // an absolute path
   std::optional<std::string> scene_text;  // of the scene, where it came from standard input
-  std::optional<Bounds> framed;           // what the camera has in view, where a first pass found it [m]
+  std::vector<Vec3> framed;               // outermost points of what a first pass found for the camera; empty: none [m]
   bool preview = false;                   // a quarter of the size, with coarse meshes
   std::vector<std::string> settings;      // path=value over the scene's
   std::optional<std::size_t> sweep_point;
@@ -38,8 +38,8 @@ struct RunInfo {
   std::string ended;                                // "done", "interrupted" or the failure's message
 };
 
-// Returns `framed` of a run.json; nothing where it has none.
-std::optional<Bounds> framed_in(const std::string& info_json);
+// Returns `framed` of a run.json; empty where it has none.
+std::vector<Vec3> framed_in(const std::string& info_json);
 
 // Writes the information as run.json holds it.
 std::string info_json(const RunInfo& info);

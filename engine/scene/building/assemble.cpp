@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "scene/building/overlaps.h"
 #include "scene/building/selected_vertices.h"
+#include "scene/building/skin_offsets.h"
 #include "scene/building/unplaced_body.h"
 #include "scene/building/weaving.h"
 #include "scene/definition/rotation.h"
@@ -34,10 +35,11 @@ void apply(const Eigen::Affine3d& place, Positions& points) {
   for (Eigen::Index v = 0; v < points.rows(); ++v) points.row(v) = (place * Vec3(points.row(v))).transpose();
 }
 
-// Pieces stay where they are in the whole, which is placed and scaled as one.
+// Pieces stay where they are in the whole, which is placed and scaled as one. A body whose skin touches stands on it.
 const Positions& points_to_place(const Body& body) {
   const auto& read = body.def.read_surface;
-  return read && read->pieces.size() > 1 ? read->whole : body.unplaced;
+  if (read && read->pieces.size() > 1) return read->whole;
+  return body.def.contact.skin && body.skin.points.rows() > 0 ? body.skin.points : body.unplaced;
 }
 
 Problem at(const FilePlace& place, std::string message) { return {place, std::move(message)}; }
@@ -241,6 +243,7 @@ std::vector<Body> assemble(const SceneDef& scene, const SlowWork& work) {
       body.placement = placement(def, points_to_place(body));
       apply(body.placement, body.description.mesh.rest);
       for (double& overhang : body.description.overhang) overhang *= scale_of(body);
+      if (def.contact.skin) body.description.drawn_offset = skin_offsets(body);
       check_distance(body, problems);
       note_size(body);
       note_drag(scene, body);

@@ -169,6 +169,7 @@ struct BodyContactDef {
   std::optional<std::vector<std::string>> meets;
   FilePlace meets_place;  // of `meets` in the file, for messages once all bodies are known
   bool self = true;       // whether it touches itself
+  bool skin = false;      // whether the drawn skin touches colliders in the stead of the elements
   double friction = 0.5;  // its share of the coefficient of Coulomb's law between it and another body
 };
 
@@ -250,12 +251,15 @@ struct CameraKey {
 
 // Names what a camera without a place of its own has in the picture.
 enum class Framed {
-  start,  // the bodies where they start, and the ground below those that will fall
-  film,   // the bodies' whole motion, which a rough first pass finds, or a drawing knows
+  automatic,  // the whole motion where the bodies leave the picture of the start, by the same first pass; else the
+              // start
+  start,      // the bodies where they start, and the ground below those that will fall
+  film,       // the bodies' whole motion, which a rough first pass finds, or a drawing knows
 };
 template <>
 struct Names<Framed> {
-  static constexpr std::array table = {Name{Framed::start, "start"}, Name{Framed::film, "film"}};
+  static constexpr std::array table = {Name{Framed::automatic, "auto"}, Name{Framed::start, "start"},
+                                       Name{Framed::film, "film"}};
 };
 
 // Describes the camera. Without a position, the eye stands in the direction of azimuth and elevation, just far enough
@@ -265,14 +269,16 @@ struct CameraDef {
   double azimuth_deg = 30, elevation_deg = 14;
   std::optional<double> distance;  // [m]
   double fov_deg = 30;             // vertical
-  Framed frames = Framed::start;
-  double margin = 1.25;  // air around the bodies when they are framed
-  double orbit_deg = 0;  // how fast the eye goes round the target [degrees/s]
-  std::string follow;    // the body or collider that the camera moves along with; empty: none
+  Framed frames = Framed::automatic;
+  std::optional<double> margin;  // air around what is framed; nothing: the usual one
+  double orbit_deg = 0;          // how fast the eye goes round the target [degrees/s]
+  std::string follow;            // the body or collider that the camera moves along with; empty: none
   Ease ease = Ease::smooth;
   std::vector<CameraKey> keys;  // in order of time
 
   bool moves() const { return orbit_deg != 0 || !keys.empty(); }
+  // Tells whether the scene says where the camera stands, so that nothing else decides what is in the picture.
+  bool is_placed() const { return position || target || distance || !follow.empty() || !keys.empty(); }
 };
 
 // Names what is seen behind the bodies.
@@ -368,6 +374,7 @@ struct TextDef {
 struct OutputDef {
   int width = 1280;
   int height = 720;
+  double aspect = 0;                     // width over height for which the camera was placed; 0: those of the pictures
   int samples = 4;                       // of antialiasing, a pixel
   bool energy = false;                   // whether kinetic, elastic and gravitational energy are computed each frame
   std::vector<PicturePass> passes = {};  // pictures in numbers beside those of the film, in ascending order

@@ -223,7 +223,7 @@ void read_cloth_look(const ConfigTable& table, BodyDef& body) {
 // (meeting_check.h).
 BodyContactDef read_contact(const ConfigTable& body) {
   BodyContactDef contact;
-  const auto table = body.table({"contact", "", "with other bodies and with itself"});
+  const auto table = body.table({"contact", "", "with other bodies, with itself and with colliders"});
   if (!table) return contact;
   const auto meets = table->boolean_or_texts(
       {"meets", "",
@@ -235,6 +235,8 @@ BodyContactDef read_contact(const ConfigTable& body) {
     contact.meets.emplace();
   }
   contact.meets_place = table->place("meets");
+  contact.skin = table->boolean(
+      {"skin", "", "colliders are touched where its drawn skin is, and not where its elements are"}, contact.skin);
   contact.self = table->boolean({"self", "", "whether it touches itself"}, contact.self);
   contact.friction = table->number({"friction", "",
                                     "its share of Coulomb's coefficient between two bodies, which is the geometric "

@@ -72,14 +72,14 @@ CameraDef read_camera(const ConfigTable& table, CameraDef camera) {
   camera.distance = table.number_if_given(how_far, Range::positive());
   camera.fov_deg = table.number(fov, camera.fov_deg, fields_of_view);
   camera.frames = table.word<Framed>(
-      {"frames", "", "what is in the picture: the bodies as they start, or their whole motion, by a first pass"},
+      {"frames", "",
+       "what is in the picture: the bodies as they start, or their whole motion, by a first pass; auto: their whole "
+       "motion if they leave the picture of the start and nothing else places the camera"},
       camera.frames);
-  // The box of the whole motion is larger than the bodies are at any one time, so less air is enough.
-  if (camera.frames == Framed::film) camera.margin = 1.05;
-  camera.margin = table.number({"margin", "",
-                                "air around the bodies, 1.05 for the whole motion; without position and "
-                                "distance all are framed"},
-                               camera.margin, Range::between(0.5, 10));
+  camera.margin = table.number_if_given({"margin", "",
+                                         "air around what is framed, which all is without position and distance "
+                                         "[1.25 for the start, 1.05 for the whole motion]"},
+                                        Range::between(0.5, 10));
   camera.orbit_deg = table.number({"orbit", "degrees/s", "how fast the eye goes round the target"}, camera.orbit_deg,
                                   Range::between(-3600, 3600));
   camera.follow = table.text({"follow", "", "name of a body or collider with which eye and target move along"}, "");

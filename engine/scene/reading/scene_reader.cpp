@@ -7,6 +7,7 @@
 #include "scene/reading/body_pieces.h"
 #include "scene/reading/meeting_check.h"
 #include "scene/reading/model_scene.h"
+#include "scene/reading/picture_size.h"
 #include "scene/reading/sweep.h"
 #include "scene/reading/table_readers.h"
 
@@ -22,6 +23,25 @@ const std::vector<std::set<std::string>>& exclusive_keys() {
                                                             {"target", "follow"}};
   return groups;
 }
+
+namespace {
+
+// Reads a size by name, which stands over width and height. These then tell for which shape the camera was placed.
+void read_size(const ConfigTable& table, OutputDef& output) {
+  const std::string text = table.text({"size", "",
+                                       "portrait, square, 720p, 1080p, 4k or WIDTHxHEIGHT, over width and height: a "
+                                       "camera that the scene places keeps in "
+                                       "the picture what it has there at width and height"},
+                                      "");
+  if (text.empty()) return;
+  const std::optional<PictureSize> size = picture_size(text);
+  if (!size) return table.complain("size", fmt::format("size: '{}' is none of {}", text, picture_size_words()));
+  output.aspect = static_cast<double>(output.width) / output.height;
+  output.width = size->width;
+  output.height = size->height;
+}
+
+}  // namespace
 
 SceneDef read_scene(Config& config) {
   SceneDef scene;
@@ -77,6 +97,7 @@ SceneDef read_scene(Config& config) {
                                          Range::between(16, 8192));
     scene.output.height = output->integer({"height", "pixels", "even, for the film's encoder"}, scene.output.height,
                                           Range::between(16, 8192));
+    read_size(*output, scene.output);
     if (scene.output.width % 2 != 0) output->complain("width", "width: must be even");
     if (scene.output.height % 2 != 0) output->complain("height", "height: must be even");
     scene.output.samples = output->integer({"samples", "", "antialiasing samples a pixel: 1, 2, 4 or 8"},

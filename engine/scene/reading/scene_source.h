@@ -21,7 +21,7 @@ struct SceneSource {
   SceneSource(std::filesystem::path place, std::string given) : path(std::move(place)), text(std::move(given)) {}
 
   // Returns the name of the scene, after which a run's folder is called.
-  std::string name() const { return text ? "stdin" : path.stem().string(); }
+  std::string name() const { return path == standard_input ? "stdin" : path.stem().string(); }
 };
 
 }  // namespace supple

@@ -72,7 +72,7 @@ void find_way_out(const Model& model, const StepInputs& inputs, std::size_t p, c
   const std::vector<Collider>& colliders = *inputs.colliders;
   const Part& part = model.parts[p];
   const double push_out = push_out_of(model, inputs, part.size);
-  const VertexSearch search{model, inputs, work.start, work};
+  const VertexSearch search{model, inputs, *work.begin, work};
   std::vector<std::size_t> deep;
   for (std::size_t c = 0; c < colliders.size(); ++c) {
     const double least = std::min(search.deepest_start(c, part, -push_out), faces.least_distance[c]);
@@ -112,13 +112,23 @@ void remember_vertices(const Model& model, const std::vector<Collider>& collider
 
 }  // namespace
 
+Positions drawn_offsets(const Model& model, const Positions& x, Threads* threads) {
+  const DrawnPlaces& drawn = model.drawn;
+  if (drawn.frames.count() == 0) return Positions(0, 3);
+  Positions offsets = Positions::Zero(model.vertices, 3);
+  const std::vector<Mat3> frames = frames_at(drawn.frames, x, threads);
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    offsets.row(drawn.frames.vertex[i]) = (frames[i] * drawn.offset.row(Eigen::Index(i)).transpose()).transpose();
+  return offsets;
+}
+
 void measure_moves(const Model& model, const Positions& x, const ContactWork& work, std::vector<double>& moves) {
   moves.resize(vertex_groups(model));
   for (int group = 0; group < vertex_groups(model); ++group) {
     double most = 0;
     const int end = std::min(model.free, (group + 1) * vertices_a_group);
     for (int v = group * vertices_a_group; v < end; ++v)
-      most = std::max(most, (x.row(v) - work.start.row(v)).squaredNorm());
+      most = std::max(most, (work.place(x, v) - work.start.row(v).transpose()).squaredNorm());
     moves[group] = std::sqrt(most);
   }
 }
@@ -133,6 +143,8 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
   work.prediction = &y;
   work.begin = &q;
   work.start = q.topRows(model.free);
+  work.drawn_offset = drawn_offsets(model, q, threads);
+  if (work.drawn_offset.rows() > 0) work.start += work.drawn_offset.topRows(model.free);
   work.clearance.assign(colliders * model.free, unknown);
   if (colliders > 0) remember_vertices(model, *inputs.colliders, work);
   work.group_distance.resize(colliders * groups);
@@ -193,12 +205,14 @@ class Planes {
   void of_vertex(int v, const Way& way, double field, double reach, QueryMemory& near,
                  std::vector<Contact>& list) const {
     Contact contact = contact_at(ContactStencil::at_vertex(v), v);
+    const Vec3 offset = work_.offset(v);
     if (is_leaving(v) && field <= 0) {
       leave(view_, way, way_out(v), field, push_out(v), near, contact);
+      contact.offset -= contact.normal.dot(offset);
       return list.push_back(contact);
     }
     const std::optional<SurfacePoint> surface = view_.holding(way, field, reach, near);
-    if (surface) add(*surface, way, field, 0, near, contact, list);
+    if (surface) add(*surface, way, offset, field, 0, near, contact, list);
   }
 
   // Adds the contact of a face's point. number: the number of the point among the faces' points in this step.
@@ -213,7 +227,7 @@ class Planes {
       return list.push_back(contact);
     }
     const std::optional<SurfacePoint> surface = plane_of(view_, face, way, reach, face.near);
-    if (surface) add(*surface, way, face.field, face.slack, face.near, contact, list);
+    if (surface) add(*surface, way, Vec3::Zero(), face.field, face.slack, face.near, contact, list);
   }
 
  private:
@@ -236,20 +250,20 @@ class Planes {
   }
 
   // Adds a contact with the plane through a surface's point, lowered by the slack and by as much of the depth as need
-  // not be corrected in this step.
-  void add(const SurfacePoint& surface, const Way& way, double field, double slack, QueryMemory& near, Contact& contact,
-           std::vector<Contact>& list) const {
+  // not be corrected in this step. offset: from the contact's point to the place whose way this is.
+  void add(const SurfacePoint& surface, const Way& way, const Vec3& offset, double field, double slack,
+           QueryMemory& near, Contact& contact, std::vector<Contact>& list) const {
     contact.normal = view_.end().linear() * surface.normal;
     const std::int32_t corner = contact.stencil.vertex[0];
     if (is_leaving(corner) && contact.normal.dot(way_out(corner)) < 0.5)
       return;  // the points that leave pull it through
     const double fastest = push_out(corner);
     const double deep = field < -fastest ? std::max(0.0, -view_.closest(way.a, near).distance - fastest) : 0;
-    contact.offset = contact.normal.dot(view_.end() * surface.point) - std::max(slack, deep);
+    contact.offset = contact.normal.dot(view_.end() * surface.point - offset) - std::max(slack, deep);
     contact.depth = std::max(0.0, -gap(contact, x_));
     if (friction_ > 0) {
       contact.stick = inputs_.solver.contact.stick * size_at(corner) * model_.time_step;
-      contact.origin = view_.carried(way.q);
+      contact.origin = view_.carried(way.q) - offset;
       const double depth_before = deep > 0 ? 0 : std::max(-field - slack, pressed_at_first(contact.number));
       contact.friction = friction_ * lagged_force(contact, depth_before, -gap(contact, prediction_),
                                                   model_.scheme.inertia * contact.stencil.mass(model_.mass) /

@@ -39,7 +39,8 @@ struct ContactWork {
   std::vector<ColliderTraits> traits;    // by collider
   // The way by which each part leaves each collider, colliders x parts; zero: the part does not start deep inside.
   std::vector<Vec3> way_out;
-  Positions start;                // q of the free vertices [m]
+  Positions start;                // where the places of the free vertices that touch are at q [m]
+  Positions drawn_offset;         // from all vertices to these places; empty: vertices touch themselves [m]
   std::vector<FacePoints> faces;  // by collider
   SurfaceWork surfaces;           // for contacts of the model's parts with each other
   // How deep the vertices that touch are pressed into colliders when a film begins, colliders x free; empty in every
@@ -49,7 +50,16 @@ struct ContactWork {
   const Positions* prediction = nullptr;  // y of the step, the caller's, n x 3 [m]
   std::uint64_t set_before = 0, set_now = 0;
   ContactCounts counts;
+
+  // Returns the place of a free vertex that touches colliders, at positions of the step [m]. Its offset from the vertex
+  // is that at the start of the step, so that its contact is linear in the positions.
+  Vec3 place(const Positions& x, std::int32_t v) const { return x.row(v).transpose() + offset(v); }
+  Vec3 offset(std::int32_t v) const { return drawn_offset.rows() == 0 ? Vec3(0, 0, 0) : Vec3(drawn_offset.row(v)); }
 };
+
+// Returns by vertex the way to the place of what is drawn that touches colliders in its stead; empty where
+// vertices touch themselves [m].
+Positions drawn_offsets(const Model& model, const Positions& x, Threads* threads);
 
 // Prepares a step from q: finds what can touch at all. q and y must outlive the step.
 void begin_contacts(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,

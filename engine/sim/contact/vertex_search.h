@@ -46,8 +46,9 @@ struct VertexSearch {
   bool is_clear_from_afar(const ColliderView& view, std::size_t c, int v, double collider_move) const {
     const double field = work.clearance[c * model.free + v];
     if (std::isnan(field)) return false;
-    const double moved = (x.row(v) - work.start.row(v)).norm() + collider_move;
-    const double freely = (work.prediction->row(v) - work.start.row(v)).norm() + collider_move;
+    const Vec3 start = work.start.row(v);
+    const double moved = (work.place(x, v) - start).norm() + collider_move;
+    const double freely = (work.place(*work.prediction, v) - start).norm() + collider_move;
     return moved + reach_of(moved, freely) < view.clear(field);
   }
 
@@ -82,8 +83,8 @@ struct VertexSearch {
     const int end = std::min(model.free, (group + 1) * vertices_a_group);
     for (int v = group * vertices_a_group; v < end; ++v) {
       if (is_clear_from_afar(view, c, v, work.collider_move[at])) continue;
-      const Way way = view.way(work.start.row(v), x.row(v));
-      const double reach = reach_of(way.length, view.length_to(work.prediction->row(v), way));
+      const Way way = view.way(work.start.row(v), work.place(x, v));
+      const double reach = reach_of(way.length, view.length_to(work.place(*work.prediction, v), way));
       const bool asked = !std::isnan(work.clearance[c * model.free + v]);
       if (!asked && is_certainly_clear(view, way.a, way.length + reach, work.group_distance[at] > 0, memory(c, v)))
         continue;

@@ -49,6 +49,32 @@ void place_vertices(const std::vector<const Model*>& bodies, Model& joined) {
   for (std::int32_t v = 0; v < joined.vertices; ++v) joined.internal_of[joined.input_of[v]] = v;
 }
 
+// Joins the places that touch colliders in the stead of vertices.
+void join_drawn(const std::vector<const Model*>& bodies, Model& joined) {
+  VertexFrames& frames = joined.drawn.frames;
+  frames.begin = {0};
+  std::vector<Vec3> gradients, offsets;
+  for (std::size_t p = 0; p < bodies.size(); ++p) {
+    const DrawnPlaces& body = bodies[p]->drawn;
+    for (Eigen::Index i = 0; i < body.frames.count(); ++i) {
+      frames.vertex.push_back(joined_vertex(joined.parts[p], body.frames.vertex[std::size_t(i)]));
+      offsets.emplace_back(body.offset.row(i).transpose());
+      for (std::int32_t t = body.frames.begin[std::size_t(i)]; t < body.frames.begin[std::size_t(i) + 1]; ++t) {
+        frames.corner.push_back(joined_vertex(joined.parts[p], body.frames.corner[std::size_t(t)]));
+        gradients.emplace_back(body.frames.gradient.row(t).transpose());
+      }
+      frames.begin.push_back(static_cast<std::int32_t>(frames.corner.size()));
+    }
+  }
+  const auto rows = [](const std::vector<Vec3>& list) {
+    Positions result(std::ssize(list), 3);
+    for (std::size_t i = 0; i < list.size(); ++i) result.row(Eigen::Index(i)) = list[i].transpose();
+    return result;
+  };
+  frames.gradient = rows(gradients);
+  joined.drawn.offset = rows(offsets);
+}
+
 void place_surfaces(const std::vector<const Model*>& bodies, Model& joined) {
   Eigen::Index triangles = 0;
   for (const Model* body : bodies) triangles += body->surface.rows();
@@ -183,6 +209,7 @@ Model join(const std::vector<const Model*>& bodies) {
   joined.scheme = first.scheme;
   place_parts(bodies, joined);
   place_vertices(bodies, joined);
+  join_drawn(bodies, joined);
   place_surfaces(bodies, joined);
   joined.slot_begin.push_back(0);
   double stiffness = 0;

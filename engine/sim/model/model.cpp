@@ -44,6 +44,19 @@ void number_vertices(Model& model, const BodyDescription& body, const std::vecto
     model.overhang.push_back(body.overhang[std::size_t(model.input_of[i])]);
 }
 
+// Gives the model the places that touch colliders in the stead of its vertices.
+void number_drawn(Model& model, const BodyDescription& body) {
+  std::vector<std::int32_t> moved;  // by the numbers of the input
+  for (std::int32_t v = 0; v < body.drawn_offset.rows(); ++v)
+    if (!body.drawn_offset.row(v).isZero(0)) moved.push_back(v);
+  model.drawn.frames = vertex_frames(body.mesh, moved);
+  model.drawn.offset.resize(std::ssize(moved), 3);
+  for (Eigen::Index i = 0; i < model.drawn.offset.rows(); ++i)
+    model.drawn.offset.row(i) = body.drawn_offset.row(moved[std::size_t(i)]);
+  for (std::int32_t& v : model.drawn.frames.vertex) v = model.internal_of[v];
+  for (std::int32_t& v : model.drawn.frames.corner) v = model.internal_of[v];
+}
+
 // Sorts the triangles, so that neighbours stay together as their vertices do.
 void number_surface(Model& model, const Triangles& input) {
   std::vector<std::array<std::int32_t, 3>> triangles;
@@ -187,6 +200,7 @@ Model build_model(const BodyDescription& body) {
   if (std::count(held.begin(), held.end(), 0) == 0)
     throw InputError(body.name, "every vertex is held: nothing is left to move");
   number_vertices(model, body, held);
+  number_drawn(model, body);
   const double size = bounds_of(body.mesh.rest).diagonal();
   model.parts = {Part{.name = body.name,
                       .free = model.free,

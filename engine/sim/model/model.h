@@ -10,6 +10,7 @@
 
 #include "base/names.h"
 #include "geometry/meshes/mesh.h"
+#include "geometry/meshes/vertex_frames.h"
 #include "sim/elements/element_kernels.h"
 #include "sim/elements/element_records.h"
 #include "sim/materials/material.h"
@@ -57,6 +58,9 @@ struct BodyDescription {
   // How far what is drawn reaches beyond this surface, by vertex; contact with other bodies begins there. Empty:
   // nowhere [m]
   std::vector<double> overhang;
+  // By vertex, the way from it at rest to the place of what is drawn that touches colliders in its stead, n x 3. Empty:
+  // vertices touch colliders themselves [m]
+  Positions drawn_offset;
   double density = 1000;           // of the tetrahedra [kg/m^3]
   std::vector<double> point_mass;  // by vertex, on top of the tetrahedra's [kg]; empty: none
   std::vector<Handle> handles;
@@ -86,6 +90,13 @@ struct Part {
   double drag = 0;      // beta/h
 };
 
+// Holds the places of what is drawn that touch colliders in the stead of some vertices. Each moves along with its
+// vertex, and its offset from the vertex turns and stretches with the elements there.
+struct DrawnPlaces {
+  VertexFrames frames;  // those of the vertices
+  Positions offset;     // by frame, at rest [m]
+};
+
 // As a System it is A = w M/h^2 + (e theta^2 + beta/h) L + springs of handles.
 struct Model : System {
   std::uint64_t structure = 0;  // names the description that the model was built from; new values keep it
@@ -102,6 +113,7 @@ struct Model : System {
   std::vector<std::int32_t> internal_of;  // vertex of the model, by vertex of the input file
   Triangles surface;                      // the triangles that contact sees, in the order of their lowest vertices
   std::vector<double> overhang;           // of what is drawn beyond this surface, by vertex; empty: none [m]
+  DrawnPlaces drawn;                      // what touches colliders in the stead of vertices
 
   Integrator integrator = Integrator::backward_euler;
   TimeScheme scheme = scheme_of(Integrator::backward_euler);

@@ -20,12 +20,15 @@ constexpr double touching = 1e-6;  // distance within which a vertex touches, ov
 // Tells which vertices touch a collider with friction as the step begins, colliders x free; empty where none does.
 std::vector<char> touching_vertices(const Model& model, const StepInputs& inputs, const Positions& x) {
   std::vector<char> found;
+  const Positions drawn = drawn_offsets(model, x, nullptr);
   for (std::size_t c = 0; c < inputs.colliders->size(); ++c) {
     const Collider& collider = (*inputs.colliders)[c];
     if (collider.friction <= 0) continue;
     const Eigen::Isometry3d to_local = inputs.collider_motions[c].start.inverse();
     for (int v = 0; v < model.free; ++v) {
-      const double distance = collider.shape.distance(to_local * Vec3(x.row(v).transpose())) - collider.thickness;
+      Vec3 place = x.row(v).transpose();
+      if (drawn.rows() > 0) place += drawn.row(v).transpose();
+      const double distance = collider.shape.distance(to_local * place) - collider.thickness;
       if (std::abs(distance) > touching * model.part_of(v).size) continue;
       found.resize(inputs.colliders->size() * std::size_t(model.free), 0);
       found[c * std::size_t(model.free) + v] = 1;

@@ -1,0 +1,41 @@
+// Plays a film before it is made, with meshes as coarse as can be, to learn where its bodies go. Not here: what is told
+// of the pictures (rough_pictures.h), and what the camera frames (rough_motion.h).
+#pragma once
+
+#include "base/user_cache.h"
+#include "film/pictures/drawn_film.h"
+#include "film/plan/film_solvers.h"
+#include "film/plan/loaded_film.h"
+#include "output/run/profile.h"
+
+namespace supple {
+
+// Says how much work a pass may be.
+struct PassEffort {
+  long long most_vertex_steps;  // over all bodies, frames and substeps; 120,000 take about a second
+  bool is_quick;                // few iterations, whatever the scene asks for
+  bool follows_changes;         // of a replay; otherwise the pass ends before the first one
+};
+
+using FramePositions = std::vector<Positions>;  // by body: the positions of its mesh, n x 3 [m]
+
+struct RoughPass {
+  LoadedFilm film;                     // coarse
+  std::vector<FramePositions> motion;  // by frame: after its steps; without frames one entry, the start
+  int frames = 0;                      // that were played; fewer than the film's where they would take too long
+  UserCache cache;                     // in which its skins are kept
+};
+
+// Plays as much as the effort allows, up to the first frame that fails. Throws InputError.
+RoughPass rough_pass(const FilmPlan& plan, const FilmSolvers& solvers, const PassEffort& effort);
+
+// Returns what is drawn of a pass: bodies alone, by their elements.
+DrawnFilm drawn_pass(const RoughPass& pass);
+
+// Returns a row for each frame of a pass, with how much of each body its picture shows.
+std::vector<FrameRow> rows_of(const RoughPass& pass, DrawnFilm& drawn);
+
+// Returns the outermost points of the motion, with the bodies at rest.
+std::vector<Vec3> outermost_points(const RoughPass& pass, const LoadedFilm& whole);
+
+}  // namespace supple
