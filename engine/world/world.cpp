@@ -175,8 +175,8 @@ void World::grab(LiveGrab grab) {
   Body& body = parts.bodies[b];
   if (body.def.table != body.def.name) {
     throw InputError(grab.body,
-                     fmt::format("is a piece of the surface of '{}', whose pieces have their handles in common: "
-                                 "it cannot be grabbed by itself",
+                     fmt::format("is a piece or a copy of '{}', with which it has its handles in common: it cannot be "
+                                 "grabbed by itself",
                                  body.def.table));
   }
   grab.from = parts.next_time();

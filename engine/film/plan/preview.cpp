@@ -6,8 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "scene/reading/body_pieces.h"
-
 namespace supple {
 namespace {
 
@@ -23,17 +21,16 @@ std::pair<int, int> preview_size(const OutputDef& output) {
   return {std::max(16, width), std::max(16, static_cast<int>(std::lround(output.height * share / 2)) * 2)};
 }
 
-// Returns the table that a body comes from. Pieces of one surface share a table.
-std::string table_of(const BodyDef& body) {
-  if (!body.read_surface || body.read_surface->pieces.size() < 2) return body.name;
-  return body.name.substr(0, body.name.size() - fmt::format("_{}", body.piece + 1).size());
-}
-
-// Returns the vertices that the table of a body asks for: the sum over its pieces.
+// Returns the vertices that the table of a body asks for: the sum over the pieces of its surface. Scattered copies
+// share a table, and have so many vertices each.
 int vertices_of_table(const SceneDef& scene, const std::string& table) {
-  int sum = 0;
-  for (const BodyDef& body : scene.bodies) sum += table_of(body) == table ? body.vertices : 0;
-  return sum;
+  int sum = 0, copies = 0;
+  for (const BodyDef& body : scene.bodies) {
+    if (body.table != table) continue;
+    sum += body.vertices;
+    copies += body.piece == 0 ? 1 : 0;
+  }
+  return sum / std::max(1, copies);
 }
 
 // Returns the setting that makes the mesh of a body coarser; empty where nothing does.
@@ -44,20 +41,18 @@ std::string coarser(const SceneDef& scene, const BodyDef& body, double share) {
   if (body.box) {
     const double edge = std::cbrt(share);
     const Eigen::Vector3i& cells = body.box->cells;
-    return fmt::format("body.{}.box.cells=[{}, {}, {}]", body.name, fewer(cells.x(), edge), fewer(cells.y(), edge),
+    return fmt::format("body.{}.box.cells=[{}, {}, {}]", body.table, fewer(cells.x(), edge), fewer(cells.y(), edge),
                        fewer(cells.z(), edge));
   }
   const double side = std::sqrt(share);  // of surfaces
-  if (body.cloth && body.cloth->edge)
-    return fmt::format("body.{}.cloth.edge={}", table_of(body), *body.cloth->edge / side);
+  if (body.cloth && body.cloth->edge) return fmt::format("body.{}.cloth.edge={}", body.table, *body.cloth->edge / side);
   if (body.cloth && body.cloth->mesh.empty() && body.cloth->surface.empty()) {
     const Eigen::Vector2i& cells = body.cloth->cells;
-    return fmt::format("body.{}.cloth.cells=[{}, {}]", body.name, fewer(cells.x(), side), fewer(cells.y(), side));
+    return fmt::format("body.{}.cloth.cells=[{}, {}]", body.table, fewer(cells.x(), side), fewer(cells.y(), side));
   }
   if (body.cloth || !body.mesh.empty() || body.piece > 0) return "";
-  const std::string table = table_of(body);
-  const int vertices = vertices_of_table(scene, table);
-  return fmt::format("body.{}.vertices={}", table,
+  const int vertices = vertices_of_table(scene, body.table);
+  return fmt::format("body.{}.vertices={}", body.table,
                      std::min(vertices, std::max(fewest_vertices, static_cast<int>(std::lround(vertices * share)))));
 }
 
@@ -74,7 +69,7 @@ std::vector<std::string> preview_settings(const SceneDef& scene, double share) {
   std::vector<std::string> settings = picture_settings(scene.output, width, height);
   for (const BodyDef& body : scene.bodies) {
     const std::string setting = share < 1 ? coarser(scene, body, share) : "";
-    if (!setting.empty()) settings.push_back(setting);
+    if (!setting.empty() && std::ranges::count(settings, setting) == 0) settings.push_back(setting);
   }
   return settings;
 }

@@ -41,6 +41,9 @@ int encoder_threads(int width, int height) { return std::clamp(width * height / 
 // In each of these times, 4 ms are the conversion and the start of ffmpeg.
 constexpr const char* preset = "superfast";
 
+// Files of WebM have random numbers that name them; equal films are to have equal bytes.
+constexpr const char* without_random_numbers = "-fflags +bitexact";
+
 // Returns the encoder's words for a film in the film's own colours. The numbers of a quality are constant rate factors,
 // which mean another loss for each codec.
 std::string codec_words(const FilmCoding& coding, int threads) {
@@ -54,10 +57,11 @@ std::string codec_words(const FilmCoding& coding, int threads) {
           "-tag:v hvc1 -movflags +faststart",
           of_quality(30, 22, 15), threads);
     case FilmFormat::webm:
-      return fmt::format("-c:v libvpx-vp9 -deadline good -cpu-used 4 -b:v 0 -crf {} -threads {}",
-                         of_quality(42, 31, 20), threads);
+      return fmt::format("-c:v libvpx-vp9 -deadline good -cpu-used 4 -b:v 0 -crf {} -threads {} {}",
+                         of_quality(42, 31, 20), threads, without_random_numbers);
     case FilmFormat::webm_av1:
-      return fmt::format("-c:v libsvtav1 -preset 8 -crf {} -svtav1-params lp={}", of_quality(45, 32, 20), threads);
+      return fmt::format("-c:v libsvtav1 -preset 8 -crf {} -svtav1-params lp={} {}", of_quality(45, 32, 20), threads,
+                         without_random_numbers);
     case FilmFormat::mov:
       return fmt::format("-c:v prores_ks -profile:v 4444 -vendor apl0 -alpha_bits {} -qscale:v {} -threads {}",
                          coding.coverage ? 8 : 0, of_quality(9, 3, 1), threads);

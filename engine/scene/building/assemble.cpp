@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "base/text.h"
@@ -297,6 +298,23 @@ Positions first_positions(const Body& body) {
   return start;
 }
 
+namespace {
+
+// Adds the velocities of turning about the centre of mass. spin [rad/s]
+void add_spin(const Model& model, const Vec3& spin, State& state) {
+  Vec3 center = Vec3::Zero();
+  double mass = 0;
+  for (int v = 0; v < model.vertices; ++v) {
+    mass += model.mass[v];
+    center += model.mass[v] * state.x.row(v).transpose();
+  }
+  center /= mass;
+  for (int v = 0; v < model.vertices; ++v)
+    state.v.row(v) += spin.cross(Vec3(state.x.row(v).transpose()) - center).transpose();
+}
+
+}  // namespace
+
 State start_state(const Model& model, const Body& body) {
   State state = rest_state(model);
   const Positions start = first_positions(body);
@@ -304,6 +322,7 @@ State start_state(const Model& model, const Body& body) {
     state.x.row(v) = start.row(model.input_of[v]);
     state.v.row(v) = body.def.velocity.transpose();
   }
+  if (!body.def.spin_deg.isZero(0)) add_spin(model, body.def.spin_deg * (std::numbers::pi / 180), state);
   for (const auto& [vertex, handle, holds] : model.handled) {
     if (!body.def.handles[handle].grabs) state.v.row(vertex).setZero();
   }

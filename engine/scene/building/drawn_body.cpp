@@ -60,7 +60,8 @@ struct SkinRequest {
 
 SkinRequest request_for(const Body& body) {
   if (body.def.shape.empty()) return {body, square_of(body) / scale_of(body)};
-  return {body, bounds_of(body.unplaced * turn_of(body).transpose()).extent().maxCoeff() / body.def.skin_cells};
+  const Mat3 turn = rotation_from_degrees(body.def.table_turn_deg).toRotationMatrix();
+  return {body, bounds_of(body.unplaced * turn.transpose()).extent().maxCoeff() / body.def.skin_cells};
 }
 
 // Draws the mesh's own boundary.

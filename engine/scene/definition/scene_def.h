@@ -195,12 +195,14 @@ struct BodyDef {
   double scale = 1;               // used where no size is given
   Vec3 position = Vec3(0, 0, 0);  // of the middle of the bounding box's bottom [m]
   Vec3 turn_deg = Vec3(0, 0, 0);
-  std::optional<double> density;     // [kg/m^3]; of cloth [kg/m^2]
-  std::optional<double> total_mass;  // spread over the volume, or over the area of cloth [kg]
-  SubstanceDef substance;            // of solids
+  Vec3 table_turn_deg = Vec3(0, 0, 0);  // without the random turn of a copy; copies share the skins of this turn
+  std::optional<double> density;        // [kg/m^3]; of cloth [kg/m^2]
+  std::optional<double> total_mass;     // spread over the volume, or over the area of cloth [kg]
+  SubstanceDef substance;               // of solids
   StartDef start;
   StartInside start_inside = StartInside::move;
   Vec3 velocity = Vec3(0, 0, 0);         // at the start [m/s]
+  Vec3 spin_deg = Vec3(0, 0, 0);         // at the start, about the centre of mass [degrees/s]
   std::optional<DragCoefficients> drag;  // nothing: the usual ones on cloth, and none on solids
   std::optional<GasFilling> pressure;    // of gas in its surface
   FilePlace pressure_place;              // in the file, for messages once the surface is known

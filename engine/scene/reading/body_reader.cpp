@@ -321,6 +321,7 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   body.position = table.vector({"position", "m", "of the middle of the bounding box's bottom"}, Vec3(0, 0, 0));
   body.turn_deg =
       table.vector({"turn_deg", "degrees", "rotation about x, then y, then z, before it is placed"}, Vec3(0, 0, 0));
+  body.table_turn_deg = body.turn_deg;
   body.density = table.number_if_given(
       {"density", "kg/m^3", "mass by volume; of cloth by area [kg/m^2]; the preset's, 1000, or 0.2 for cloth"},
       Range::positive());
@@ -339,6 +340,10 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
        "an error"},
       StartInside::move);
   body.velocity = table.vector({"velocity", "m/s", "at the start"}, Vec3(0, 0, 0));
+  body.spin_deg = table.vector({"spin_deg", "degrees/s",
+                                "at the start: the axis about the centre of mass, as long as the body is "
+                                "fast"},
+                               Vec3(0, 0, 0));
   body.drag = read_drag(table);
   body.pressure = read_pressure(table);
   body.pressure_place = table.place("pressure");

@@ -8,6 +8,7 @@
 #include "scene/reading/meeting_check.h"
 #include "scene/reading/model_scene.h"
 #include "scene/reading/picture_size.h"
+#include "scene/reading/scatter.h"
 #include "scene/reading/sweep.h"
 #include "scene/reading/table_readers.h"
 
@@ -61,12 +62,19 @@ SceneDef read_scene(Config& config) {
   SolverDef defaults;
   if (const auto solver = root.table({"solver", "", "for all bodies"})) defaults = read_solver(*solver, defaults);
   std::set<std::string> names;
+  const std::vector<Scattering> scatterings = read_scatterings(root, scene.seed);
+  std::vector<std::string> tables;
   for (const ConfigTable& table : root.tables({"body", "", "what moves"})) {
-    for (BodyDef& body : bodies_of(table, read_body(table, defaults))) {
-      if (!names.insert(body.name).second) table.complain("name", fmt::format("two bodies named '{}'", body.name));
-      scene.bodies.push_back(std::move(body));
+    BodyDef read = read_body(table, defaults);
+    tables.push_back(read.name);
+    for (BodyDef& copy : copies_of(scatterings, table, std::move(read))) {
+      for (BodyDef& body : bodies_of(table, std::move(copy))) {
+        if (!names.insert(body.name).second) table.complain("name", fmt::format("two bodies named '{}'", body.name));
+        scene.bodies.push_back(std::move(body));
+      }
     }
   }
+  check_scattered(root, scatterings, tables);
   check_meetings(scene, config);
   // A body that is alone and has no name needs no caption.
   const std::vector<ConfigTable> given = root.tables({"body", "", "what moves"});
