@@ -61,9 +61,10 @@ TEST(CheckPictures, NameTheBodyThatLeavesThemAndTheFirstFrame) {
   EXPECT_EQ(checked(folder.path, still, {"--set", "body.rising.velocity=[0, 0, 0]"}).find("rough"), std::string::npos);
 }
 
-TEST(CheckPictures, ShowTheWholeMotionWhereNothingPlacesTheCamera) {
+TEST(CheckPictures, ShowTheWholeMotionWhereItIsAskedForAndNothingPlacesTheCamera) {
   const test::TemporaryFolder folder;
-  EXPECT_EQ(checked(folder.path, "").find("rough"), std::string::npos);
+  const std::string automatic = "[camera]\nframes = \"auto\"\n";
+  EXPECT_EQ(checked(folder.path, automatic).find("rough"), std::string::npos);
   const std::vector<std::string> words = {"render", "s.toml", "--no-video", "--size", "96x54", "--out", "a"};
   const test::Result film = run(folder.path, words);
   EXPECT_NE(film.err.find("the camera shows the bodies' whole motion, which leaves the picture of the start: a rough "
@@ -82,9 +83,10 @@ TEST(CheckPictures, ShowTheWholeMotionWhereNothingPlacesTheCamera) {
     EXPECT_EQ(made.err.find("the camera shows"), std::string::npos) << made.err;
     return test::read_file(folder.path / name / "frames" / "000011.png");
   };
-  EXPECT_EQ(bytes("b", "", "[0, 0, 0]"), bytes("c", "[camera]\nframes = \"start\"\n", "[0, 0, 0]"));
+  EXPECT_EQ(bytes("b", automatic, "[0, 0, 0]"), bytes("c", "[camera]\nframes = \"start\"\n", "[0, 0, 0]"));
   const std::string placed = "[camera]\nposition = [0, 1, 3]\ntarget = [0, 0.4, 0]\n";
-  EXPECT_EQ(bytes("d", placed, "[0, 4, 0]"), bytes("e", placed + "frames = \"start\"\n", "[0, 4, 0]"));
+  EXPECT_EQ(bytes("d", placed + "frames = \"auto\"\n", "[0, 4, 0]"),
+            bytes("e", placed + "frames = \"start\"\n", "[0, 4, 0]"));
 }
 
 TEST(CheckPictures, SayThatNoneShowsABody) {

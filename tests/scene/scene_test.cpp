@@ -270,6 +270,7 @@ keys = [{{ t = 0 }}]
 [text]
 [output]
 [wind]
+[[scatter]]
 [sweep.values]
 )",
                                               material),

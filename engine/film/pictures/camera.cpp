@@ -75,7 +75,7 @@ std::vector<Vec3> points_of_motion(const SceneDef& scene, const Stage& stage) {
 Camera framing_camera(const SceneDef& scene, const Stage& stage, const Vec3& direction, double fov) {
   const bool motion = frames_motion(scene, stage);
   // The outline of the whole motion is larger than the bodies are at any one time, so less air is enough.
-  const double margin = scene.camera.margin.value_or(motion ? 1.05 : 1.25);
+  const double margin = motion && scene.camera.has_usual_margin ? CameraDef::margin_of_motion : scene.camera.margin;
   // The legend may stand in the air around the bodies. Only where the air is too narrow, the bodies become smaller.
   constexpr double least_air = 1.05;
   const double narrower = std::min(1.0, margin * (1 - 2 * stage.kept_free) / least_air);

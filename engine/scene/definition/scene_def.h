@@ -271,8 +271,10 @@ struct CameraDef {
   double azimuth_deg = 30, elevation_deg = 14;
   std::optional<double> distance;  // [m]
   double fov_deg = 30;             // vertical
-  Framed frames = Framed::automatic;
-  std::optional<double> margin;  // air around what is framed; nothing: the usual one
+  Framed frames = Framed::start;
+  static constexpr double margin_of_motion = 1.05;
+  double margin = 1.25;          // air around what is framed
+  bool has_usual_margin = true;  // then it is margin_of_motion where the whole motion is framed
   double orbit_deg = 0;          // how fast the eye goes round the target [degrees/s]
   std::string follow;            // the body or collider that the camera moves along with; empty: none
   Ease ease = Ease::smooth;

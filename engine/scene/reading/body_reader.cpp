@@ -340,10 +340,10 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
        "an error"},
       StartInside::move);
   body.velocity = table.vector({"velocity", "m/s", "at the start"}, Vec3(0, 0, 0));
-  body.spin_deg = table.vector({"spin_deg", "degrees/s",
-                                "at the start: the axis about the centre of mass, as long as the body is "
-                                "fast"},
-                               Vec3(0, 0, 0));
+  body.spin_deg =
+      table.vector({"spin_deg", "degrees/s",
+                    "at the start, about an axis through the centre of mass: its direction times the speed"},
+                   Vec3(0, 0, 0));
   body.drag = read_drag(table);
   body.pressure = read_pressure(table);
   body.pressure_place = table.place("pressure");

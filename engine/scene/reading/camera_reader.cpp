@@ -76,10 +76,12 @@ CameraDef read_camera(const ConfigTable& table, CameraDef camera) {
        "what is in the picture: the bodies as they start, or their whole motion, by a first pass; auto: their whole "
        "motion if they leave the picture of the start and nothing else places the camera"},
       camera.frames);
-  camera.margin = table.number_if_given({"margin", "",
-                                         "air around what is framed, which all is without position and distance "
-                                         "[1.25 for the start, 1.05 for the whole motion]"},
-                                        Range::between(0.5, 10));
+  if (camera.frames == Framed::film) camera.margin = CameraDef::margin_of_motion;
+  camera.has_usual_margin = !table.has("margin");
+  camera.margin = table.number({"margin", "",
+                                "air around what is framed, which all is without position and distance; the default is "
+                                "1.05 for the whole motion"},
+                               camera.margin, Range::between(0.5, 10));
   camera.orbit_deg = table.number({"orbit", "degrees/s", "how fast the eye goes round the target"}, camera.orbit_deg,
                                   Range::between(-3600, 3600));
   camera.follow = table.text({"follow", "", "name of a body or collider with which eye and target move along"}, "");

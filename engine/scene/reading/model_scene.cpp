@@ -74,12 +74,20 @@ StandingModel standing_surface(const std::filesystem::path& file) {
   const double scale = model_side / read.box.extent().maxCoeff();
   model.height = scale * read.box.extent().y();
   model.sole = steady_sole(read.pieces.front().boundary);
-  // Coarse elements are much thicker than thin legs. What they give is no more than a first guess.
-  for (const int vertices : {coarse_vertices, film_vertices}) {
-    model.mesh = mesh_of_surface({read.pieces.front(), read.touching}, {vertices, file.string(), ""}, {}).mesh;
-    model.mesh.rest *= scale;
-    model.young = young_for_sag(model.mesh, model.sagging(), model.young);
+  const auto mesh_of = [&](int vertices) {
+    TetMesh mesh = mesh_of_surface({read.pieces.front(), read.touching}, {vertices, file.string(), ""}, {}).mesh;
+    mesh.rest *= scale;
+    return mesh;
+  };
+  model.mesh = mesh_of(film_vertices);  // first, so that what cannot be meshed is refused in the film's own words
+  double guess = 0;
+  try {
+    // Coarse elements are much thicker than thin legs. What they give is no more than a first guess.
+    guess = young_for_sag(mesh_of(coarse_vertices), model.sagging(), guess);
+  } catch (const InputError&) {
+    // The surface is too fine for coarse elements; the search goes without a guess.
   }
+  model.young = young_for_sag(model.mesh, model.sagging(), guess);
   model.young = young_for_fall(model.mesh, model.sagging(), model.young, fall * model.height);
   return model;
 }

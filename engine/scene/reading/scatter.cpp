@@ -79,9 +79,10 @@ Scattering read_scattering(const ConfigTable& table, std::uint64_t scene_seed) {
     table.complain("box", "box: the first corner must be the lower one");
   const auto rule = table.word<ScatterTurn>(
       {"turn", "", "random turns, after the body's own: about the vertical, any, or none"}, ScatterTurn::heading);
-  Eigen::Vector2d sizes(1, 1);
-  if (table.has("sizes"))
-    sizes = table.pair({"sizes", "", "least and largest factor of the bodies' size"}, Range::above(0, 1000));
+  const auto given = table.word_or_pair({"sizes", "", "same, or the least and the largest factor of the bodies' size"},
+                                        "same", {{"same"}}, Range::above(0, 1000));
+  const auto* factors = std::get_if<Eigen::Vector2d>(&given);
+  const Eigen::Vector2d sizes = factors != nullptr ? *factors : Eigen::Vector2d(1, 1);
   if (sizes[0] > sizes[1]) table.complain("sizes", "sizes: the first number must be the smaller one");
   const auto seed = static_cast<std::uint64_t>(
       table.integer({"seed", "", "of places, turns and sizes, beside the scene's"}, 1, Range::between(0, 2e9)));
