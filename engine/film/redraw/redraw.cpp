@@ -43,6 +43,7 @@ constexpr std::array seen = {"title",
                              "output.width",
                              "output.height",
                              "output.samples",
+                             "output.blur_samples",
                              "output.passes",
                              "body[].color",
                              "body[].back_color",
@@ -119,11 +120,11 @@ void check_same_motion(const DrawPlan& plan, const Json& info, const LoadedFilm&
     const bool seen_output =
         difference.path == "output" && (difference.a + difference.b).find("energy") == std::string::npos;
     if (seen_output) continue;
-    problems.push_back(
-        {film.info.scene_file, 0, 0,
-         fmt::format("{} is {} here and was {} in the run: only what is seen may differ (camera, look, "
-                     "output's width, height, samples and passes, colours, labels, patterns, colliders being visible)",
-                     difference.path, difference.b, difference.a)});
+    problems.push_back({film.info.scene_file, 0, 0,
+                        fmt::format("{} is {} here and was {} in the run: only what is seen may differ (camera, look, "
+                                    "output's width, height, samples, blur_samples and passes, colours, labels, "
+                                    "patterns, colliders being visible)",
+                                    difference.path, difference.b, difference.a)});
   }
   if (simulated_part(member_text(info, "replay")) != simulated_part(film.info.replay_json))
     problems.push_back({film.info.scene_file, 0, 0, "the replay changes other values than it did in the run"});
