@@ -62,7 +62,10 @@ int say_end(const DrawResult& result, const std::filesystem::path& folder) {
 void make_sheet(const DrawCommand& command, const LoadedDrawing& drawing) {
   const SceneDef& scene = drawing.film.world.script().scene();
   std::vector<double> times;
-  for (const int frame : drawing.frames) times.push_back(frame_time(frame, scene.fps));
+  for (int picture = 0; picture < picture_count(drawing); ++picture) {
+    const Moment moment = moment_of(drawing, picture);
+    times.push_back(frame_time(moment.frame, scene.fps) + moment.share / scene.fps);
+  }
   const std::filesystem::path file = write_sheet(command.folder(), scene.title, times);
   if (!command.quiet) say(stdout, fmt::format("  sheet    {}\n", file.string()));
 }
@@ -106,7 +109,7 @@ void begin_film(const DrawCommand& command, const LoadedDrawing& drawing, std::o
 
 // Makes the film from pictures that other processes have drawn. watch: started with the work.
 int film_of_parts(const DrawCommand& command, const LoadedDrawing& drawing, const Stopwatch& watch) {
-  const auto count = static_cast<int>(drawing.frames.size());
+  const int count = picture_count(drawing);
   std::optional<VideoEncoder> video;
   begin_film(command, drawing, video);
   if (video) video->add_files(command.folder() / "frames", count);
@@ -118,7 +121,7 @@ int merge_parts(const DrawCommand& command, const LoadedDrawing& drawing) {
   const std::vector<int> missing = missing_pictures(drawing, command.folder());
   if (!missing.empty()) {
     throw RunError(fmt::format("{}: {} of {} pictures are not drawn yet, the first of them {:06}",
-                               command.folder().string(), missing.size(), drawing.frames.size(), missing.front()));
+                               command.folder().string(), missing.size(), picture_count(drawing), missing.front()));
   }
   return film_of_parts(command, drawing, watch);
 }
@@ -135,7 +138,7 @@ int draw_range(const DrawCommand& command, LoadedDrawing& drawing, PictureRange 
 
 int draw_whole(const DrawCommand& command, LoadedDrawing& drawing) {
   const Stopwatch watch;
-  const auto count = static_cast<int>(drawing.frames.size());
+  const int count = picture_count(drawing);
   std::optional<VideoEncoder> video;
   begin_film(command, drawing, video);
   const int status = draw_range(command, drawing, {0, count}, video ? &*video : nullptr);
@@ -151,6 +154,7 @@ std::vector<std::string> words_of_part(const DrawCommand& command, std::size_t i
       "--every", std::to_string(plan.every),           "--gl",    std::string(name_of(plan.gl)),
       "--quiet"};
   if (plan.last >= 0) words.insert(words.end(), {"--last", std::to_string(plan.last)});
+  if (plan.smooth > 1) words.insert(words.end(), {"--smooth", std::to_string(plan.smooth)});
   if (plan.rate > 0) words.insert(words.end(), {"--rate", fmt::format("{}", plan.rate)});
   if (!plan.cache) words.emplace_back("--no-cache");
   if (!command.scene.empty()) words.push_back("--scene=" + command.scene);
@@ -166,8 +170,8 @@ int draw_in_parts(const DrawCommand& command, const LoadedDrawing& drawing) {
   run_jobs({"part", ends.size(), command.jobs, [&](std::size_t part) { return Job{words_of_part(command, part)}; },
             [&](const JobEnd& end) { ends[end.job] = end; }});
   if (interrupted()) {
-    const auto drawn = drawing.frames.size() - missing_pictures(drawing, command.folder()).size();
-    return say_end({FilmEnd::interrupted, "", static_cast<int>(drawn)}, command.folder());
+    const int drawn = picture_count(drawing) - static_cast<int>(missing_pictures(drawing, command.folder()).size());
+    return say_end({FilmEnd::interrupted, "", drawn}, command.folder());
   }
   for (const JobEnd& end : ends) {
     if (end.status != 0) throw RunError("a part " + end.how + (end.output.empty() ? "" : ": " + end.output));
@@ -272,6 +276,9 @@ int draw(DrawCommand command) {
     throw InputError("--out", "is the folder of a film; the picture of one frame goes into the file of --still");
   if (!command.passes.empty() && (command.frame || command.skins))
     throw InputError("--passes", "stand beside the pictures of a film, not beside the picture of one frame or skins");
+  if (command.plan.smooth > 1 && (command.frame || command.skins || command.runs.size() > 1))
+    throw InputError("--smooth",
+                     "is for a film of one run: leave out --frame and --skins, and draw several runs one by one");
   if (command.runs.size() > 1) return draw_several(command);
   if (command.index && *command.index >= static_cast<std::size_t>(command.of))
     throw InputError(fmt::format("--index {}", *command.index),
@@ -311,6 +318,9 @@ void add_options(Verb& verb, DrawCommand& command) {
   add_coding_options(verb, command.coding);
   add_passes_option(verb, command.passes);
   verb.flag("--sheet", command.sheet, "also sheet.png, on which a dozen of the pictures stand");
+  verb.option("--smooth", plan.smooth, "pictures for each frame; those between frames are interpolated: slow motion")
+      .between(1, 1000)
+      .shows_default();
   verb.option("--rate", command.rate, "frames a second of the film [as fast as it happened]").between(0.01, 1000.0);
   const Option frame = verb.option("--frame", command.frame, "draw this frame alone, into the file of --still")
                            .between(std::size_t(0), std::size_t(1000000));

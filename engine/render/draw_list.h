@@ -112,6 +112,9 @@ struct StageColors {
 struct Camera {
   Vec3 eye = Vec3(0, 0, 3), target = Vec3::Zero();  // [m]
   double fov_deg = 30;                              // vertical field of view
+  // How far the picture is moved on its plane, to the right and up, as tangents of angles: what a lens's border sees is
+  // moved so that the plane in focus stays where it is.
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();
 };
 
 struct Stage {
@@ -140,6 +143,16 @@ struct Followed {
   Vec3 moved;  // of its middle since the start [m]
 };
 
+// Describes what a picture is exposed to besides the moment of its frame: a span of time, and a lens (exposure.h).
+struct Exposure {
+  std::vector<std::vector<float>> before;  // by mesh: positions in the frame before; empty: nothing moves [m]
+  Camera camera_before;                    // the camera in the frame before
+  double open = 0;                         // share of the time between the two frames, up to the later one
+  double aperture = 0;                     // diameter of the lens [m]
+  double focus = 1;                        // distance along the direction of the view at which things are sharp [m]
+  int samples = 0;                         // number of pictures; 0: as many as the blur asks for
+};
+
 struct DrawList {
   Camera camera;
   std::optional<Followed> followed;
@@ -155,6 +168,7 @@ struct DrawList {
   std::optional<StageColors> colors;                          // that replace the stage's from now on
   std::string headline;                                       // at the top of the picture, in this frame
   std::vector<GraphCurve> graphs;                             // the curves of the stage's graphs up to this frame
+  std::optional<Exposure> exposure;                           // nothing: the picture is that of an instant, all sharp
 };
 
 struct Image {

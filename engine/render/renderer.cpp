@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/trace.h"
 #include "render/color.h"
+#include "render/exposure.h"
 #include "render/projection.h"
 #include "render/view.h"
 
@@ -57,7 +58,8 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
       gl_(load_gl(context_)),
       name_(gl_text(gl_, GL_RENDERER)),
       version_(gl_text(gl_, GL_VERSION)),
-      cover_(stage, stage.light.to_key.normalized()) {
+      cover_(stage, stage.light.to_key.normalized()),
+      samples_(stage.samples) {
   make_targets();
   shadows_ =
       std::make_unique<ShadowMap>(gl_, shaders, cover_.largest_body(), stage_.light.to_key.normalized(), stage_.width);
@@ -101,8 +103,8 @@ void Renderer::make_targets() {
 
 void Renderer::make_surfaces() {
   surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes, *textures_);
-  if (!visibility_) {
-    visibility_ = std::make_unique<Visibility>(stage_.width, stage_.height, stage_.samples, stage_.meshes);
+  if (!visibility_ || visibility_->samples() != samples_) {
+    visibility_ = std::make_unique<Visibility>(stage_.width, stage_.height, samples_, stage_.meshes);
   } else {
     visibility_->renew(stage_.meshes);
   }
@@ -112,7 +114,7 @@ void Renderer::make_surfaces() {
 
 // Makes a program that shades what the stage's meshes have and no more.
 void Renderer::make_shading_program() {
-  std::vector<std::string> definitions = {fmt::format("SAMPLES {}", stage_.samples)};
+  std::vector<std::string> definitions = {fmt::format("SAMPLES {}", samples_)};
   if (std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.layers.empty(); }))
     definitions.emplace_back("PAINTED");
   if (std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.square.empty(); }))
@@ -147,9 +149,12 @@ void Renderer::prepare_field() {
   gl_.TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, color_buffer_);
 }
 
-void Renderer::upload(const DrawList& list) {
+// Takes over what a list changes of the stage.
+void Renderer::take_changes(const DrawList& list) {
+  if (list.colors) stage_.colors = *list.colors;
   for (const auto& [m, mesh] : list.renewed) stage_.meshes[m] = mesh;
   if (!list.renewed.empty()) {
+    sharp_.reset();
     make_shading_program();
     make_surfaces();
   }
@@ -157,7 +162,14 @@ void Renderer::upload(const DrawList& list) {
     stage_.meshes[m].label = caption;
     captions_->renew(m, caption);
   }
-  surfaces_->upload(stage_.meshes, list);
+}
+
+// Draws with so many samples a pixel from now on.
+void Renderer::take_samples(int samples) {
+  if (samples_ == samples) return;
+  samples_ = samples;
+  make_shading_program();
+  make_surfaces();
 }
 
 // Finds what each pixel shows, and uploads the rectangle around the bodies.
@@ -192,9 +204,23 @@ void Renderer::shade(const StageLight& light) {
 }
 
 Image Renderer::draw(const DrawList& list) {
+  take_changes(list);
+  Image image;
+  if (list.exposure) {
+    image = draw_exposed(list);
+  } else {
+    take_samples(stage_.samples);
+    image = draw_moment(list, cover_.at(stage_.meshes, list), Motion::moved);
+  }
+  DrawZone zone(gl_, "captions");
+  draw_overlays(list, image);
+  return image;
+}
+
+// Draws what is seen in an instant, without words.
+Image Renderer::draw_moment(const DrawList& list, const StageCover::Frame& cover, Motion motion) {
   const double aspect = static_cast<double>(stage_.width) / stage_.height;
   const Eigen::Matrix4f view = view_matrix(list.camera, aspect, cover_.bounds().center(), cover_.reach());
-  if (list.colors) stage_.colors = *list.colors;
   const StageLight light = {stage_.light,
                             stage_.light.to_key.normalized(),
                             list.camera,
@@ -203,10 +229,9 @@ Image Renderer::draw(const DrawList& list) {
                             stage_.colors.exposure,
                             rays_through(list.camera, stage_.width, stage_.height)};
   DrawZone zone(gl_, "upload");
-  upload(list);
+  if (motion == Motion::moved) surfaces_->upload(stage_.meshes, list);
   zone.next("shadow map");
-  const StageCover::Frame cover = cover_.at(stage_.meshes, list);
-  shadows_->draw(*surfaces_, stage_.meshes, cover.shadow_center, cover.shadow_radius);
+  if (motion == Motion::moved) shadows_->draw(*surfaces_, stage_.meshes, cover.shadow_center, cover.shadow_radius);
   zone.next("visibility");
   find_visible(view, light, list);
   zone.next("ground");
@@ -220,16 +245,48 @@ Image Renderer::draw(const DrawList& list) {
   shade(light);
   if (!list.marks.empty()) draw_marks(view, list);
   zone.next("read back");
-  Image image = read_picture();
-  zone.next("captions");
-  draw_overlays(list, image);
-  return image;
+  return read_picture();
+}
+
+// Draws the mean of pictures over the list's exposure. One sample a pixel is enough for each of them, because it lies
+// in another place in each; ghosts are written into every second sample and need two. What lights and shadows cover is
+// that of the frame, so that the pictures differ in what moves alone.
+Image Renderer::draw_exposed(const DrawList& list) {
+  take_samples(std::ranges::any_of(stage_.meshes, &DrawMesh::ghost) ? 2 : 1);
+  const StageCover::Frame cover = cover_.at(stage_.meshes, list);
+  const bool moves = list.exposure->open > 0;
+  DrawList moment = list;
+  moment.exposure.reset();
+  LightSum sum;
+  Motion motion = Motion::moved;
+  for (const ExposureSample& sample : exposure_samples(*list.exposure, pictures_needed(stage_, list))) {
+    moment.camera = camera_of(list, sample);
+    if (moves) positions_of(list, sample, moment.positions);
+    visibility_->move_samples(sample.in_pixel.x(), sample.in_pixel.y());
+    shading_program_->use();
+    shading_program_->set_pairs("sample_places", visibility_->sample_places());
+    sum.add(draw_moment(moment, cover, motion));
+    if (!moves) motion = Motion::same;
+  }
+  visibility_->move_samples(0, 0);
+  shading_program_->set_pairs("sample_places", visibility_->sample_places());
+  return sum.mean();
 }
 
 std::vector<PassImage> Renderer::passes(const DrawList& list, const DrawList* next,
-                                        std::span<const PicturePass> asked) const {
+                                        std::span<const PicturePass> asked) {
   const bool ground = stage_.backdrop == Backdrop::ground || stage_.backdrop == Backdrop::shadows;
-  return passes_of({stage_.meshes, list, next, *visibility_, stage_.width, stage_.height, ground}, asked);
+  const Visibility* seen = visibility_.get();
+  if (list.exposure) {
+    if (!sharp_) sharp_ = std::make_unique<Visibility>(stage_.width, stage_.height, stage_.samples, stage_.meshes);
+    const double aspect = static_cast<double>(stage_.width) / stage_.height;
+    sharp_->find(stage_.meshes, list.positions,
+                 view_matrix(list.camera, aspect, cover_.bounds().center(), cover_.reach()),
+                 nearest_seen(list.camera, cover_.bounds().center(), cover_.reach()),
+                 rays_through(list.camera, stage_.width, stage_.height).up.norm());
+    seen = sharp_.get();
+  }
+  return passes_of({stage_.meshes, list, next, *seen, stage_.width, stage_.height, ground}, asked);
 }
 
 void Renderer::draw_marks(const Eigen::Matrix4f& view, const DrawList& list) {

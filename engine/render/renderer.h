@@ -39,18 +39,25 @@ class Renderer {
 
   Image draw(const DrawList& list);
   // Returns passes of the list that was drawn last (passes.h). next: the list of the next picture, or null.
-  std::vector<PassImage> passes(const DrawList& list, const DrawList* next, std::span<const PicturePass> asked) const;
+  // They are those of the frame's own time, all sharp, whatever the picture is exposed to.
+  std::vector<PassImage> passes(const DrawList& list, const DrawList* next, std::span<const PicturePass> asked);
 
   std::string backend() const { return context_.backend(); }
   const std::string& name() const { return name_; }        // GL_RENDERER
   const std::string& version() const { return version_; }  // GL_VERSION
 
  private:
+  // Tells whether bodies stand where they stood in the picture before, which is of the same frame.
+  enum class Motion { moved, same };
+
   void make_targets();
   void make_shading_program();
   void prepare_field();
   void make_surfaces();
-  void upload(const DrawList& list);
+  void take_samples(int samples);
+  void take_changes(const DrawList& list);
+  Image draw_moment(const DrawList& list, const StageCover::Frame& cover, Motion motion);
+  Image draw_exposed(const DrawList& list);
   void find_visible(const Eigen::Matrix4f& view, const StageLight& light, const DrawList& list);
   void shade(const StageLight& light);
   void draw_overlays(const DrawList& list, Image& image);
@@ -71,7 +78,9 @@ class Renderer {
   std::vector<std::string> definitions_;  // of the shading program
   std::unique_ptr<TextureBuffer> textures_;
   std::unique_ptr<SurfaceBuffers> surfaces_;
+  int samples_ = 0;  // samples a pixel of visibility_ and of the shading program
   std::unique_ptr<Visibility> visibility_;
+  std::unique_ptr<Visibility> sharp_;  // for passes of blurred pictures; made when they are first asked for
   std::unique_ptr<ShadowMap> shadows_;
   std::unique_ptr<Ground> ground_;
   OverlayPlaces overlays_;

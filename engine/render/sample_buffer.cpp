@@ -60,23 +60,33 @@ struct Edge {
 
 SampleBuffer::SampleBuffer(int width, int height, int samples)
     : width_(width), height_(height), samples_(samples), stride_(std::size_t(width) + lanes) {
-  const Place* place = standard_places(samples);
-  for (int lane = 0; lane < lanes; ++lane) {
-    lane_x_[std::size_t(lane)] = lane / samples * parts + place[lane % samples].x * parts / 16;
-    lane_y_[std::size_t(lane)] = place[lane % samples].y * parts / 16;
-    allowed_[0][std::size_t(lane)] = -1;
-    allowed_[1][std::size_t(lane)] = lane % samples % 2 == 0 ? -1 : 0;
-  }
+  place_lanes();
   numbers_.resize(stride_ * height * samples);
   nearness_.resize(numbers_.size());
 }
 
+// Computes what depends on the places of the samples.
+void SampleBuffer::place_lanes() {
+  const Place* place = standard_places(samples_);
+  for (int lane = 0; lane < lanes; ++lane) {
+    const Place& at = place[lane % samples_];
+    lane_x_[std::size_t(lane)] = lane / samples_ * parts + (at.x * parts / 16 + moved_x_) % parts;
+    lane_y_[std::size_t(lane)] = (at.y * parts / 16 + moved_y_) % parts;
+    allowed_[0][std::size_t(lane)] = -1;
+    allowed_[1][std::size_t(lane)] = lane % samples_ % 2 == 0 ? -1 : 0;
+  }
+}
+
+void SampleBuffer::move_samples(double x, double y) {
+  moved_x_ = static_cast<int>(x * parts);
+  moved_y_ = static_cast<int>(y * parts);
+  place_lanes();
+}
+
 std::vector<float> SampleBuffer::places() const {
   std::vector<float> result;
-  for (int s = 0; s < samples_; ++s) {
-    const Place place = standard_places(samples_)[s];
-    result.insert(result.end(), {float(place.x) / 16, float(place.y) / 16});
-  }
+  for (std::size_t s = 0; s < std::size_t(samples_); ++s)
+    result.insert(result.end(), {float(lane_x_[s]) / parts, float(lane_y_[s]) / parts});
   return result;
 }
 

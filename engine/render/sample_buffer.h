@@ -27,6 +27,9 @@ class SampleBuffer {
   SampleBuffer(int width, int height, int samples);
 
   int samples() const { return samples_; }
+  // Moves the samples of all pixels from their standard places [parts of a pixel, from 0 up to 1]. A sample that leaves
+  // its pixel comes in at the other side.
+  void move_samples(double x, double y);
   // Returns the places of the samples in a pixel from its lower left, x y each, from 0 to 1.
   std::vector<float> places() const;
 
@@ -64,8 +67,11 @@ class SampleBuffer {
   void cover(const std::array<ScreenCorner, 3>& corners, const Box& box, double area, const Written& written);
   std::size_t at(int x, int y) const { return (std::size_t(y) * stride_ + x) * samples_; }
 
+  void place_lanes();
+
   int width_, height_, samples_;
-  std::size_t stride_;  // pixels of a row, with room for the last register
+  int moved_x_ = 0, moved_y_ = 0;  // by move_samples() [parts]
+  std::size_t stride_;             // pixels of a row, with room for the last register
   // By lane of a register, which begins at a pixel's first sample: the sample's place from that pixel's corner [parts].
   std::array<std::int32_t, lanes> lane_x_, lane_y_;
   std::array<std::array<std::int32_t, lanes>, 2> allowed_;  // by value of Samples: -1 in lanes that are written

@@ -48,7 +48,9 @@ Depths depths_of(const Camera& camera, const Vec3& center, double reach) {
 
 Eigen::Matrix4f view_matrix(const Camera& camera, double aspect, const Vec3& center, double reach) {
   const Depths depths = depths_of(camera, center, reach);
-  return perspective(camera.fov_deg, aspect, depths.near, depths.far) * look_at(camera.eye, camera.target);
+  Eigen::Matrix4f projection = perspective(camera.fov_deg, aspect, depths.near, depths.far);
+  for (int k = 0; k < 2; ++k) projection(k, 2) -= projection(k, k) * static_cast<float>(camera.shift[k]);
+  return projection * look_at(camera.eye, camera.target);
 }
 
 double nearest_seen(const Camera& camera, const Vec3& center, double reach) {
@@ -59,7 +61,8 @@ Rays rays_through(const Camera& camera, int width, int height) {
   const Eigen::Matrix4d to_eye = look_at(camera.eye, camera.target).cast<double>();
   const Vec3 right = to_eye.block<1, 3>(0, 0), up = to_eye.block<1, 3>(1, 0), back = to_eye.block<1, 3>(2, 0);
   const double pixel = 2 * std::tan(camera.fov_deg * std::numbers::pi / 360) / height;
-  return {-back - 0.5 * pixel * (width * right + height * up), pixel * right, pixel * up};
+  const Vec3 corner = -back - 0.5 * pixel * (width * right + height * up);
+  return {corner - camera.shift.x() * right - camera.shift.y() * up, pixel * right, pixel * up};
 }
 
 Camera framing(const Bounds& box, const Vec3& direction, double fov_deg, double margin, double aspect) {

@@ -33,6 +33,10 @@ class Visibility {
   // date.
   const std::vector<std::uint32_t>& surfaces() const { return surfaces_; }
 
+  int samples() const { return buffer_.samples(); }
+  // See SampleBuffer::move_samples.
+  void move_samples(double x, double y) { buffer_.move_samples(x, y); }
+
   Tiles& tiles() { return tiles_; }  // in which a pixel shows something
   const Tiles& tiles() const { return tiles_; }
   const Tiles& full() const { return full_; }  // in which all samples do

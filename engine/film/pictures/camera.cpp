@@ -38,15 +38,15 @@ Vec3 mean_of(const std::vector<float>& points) {
   return sum / std::max(1.0, static_cast<double>(points.size() / 3));
 }
 
-// Returns the number of the mesh that the camera follows: bodies come first, then colliders.
-std::size_t followed_mesh(const SceneDef& scene) {
+// Returns the number of the mesh of a body or collider: bodies come first, then colliders.
+std::size_t mesh_called(const SceneDef& scene, const std::string& name) {
   std::size_t mesh = 0;
   for (const BodyDef& body : scene.bodies) {
-    if (body.name == scene.camera.follow) return mesh;
+    if (body.name == name) return mesh;
     ++mesh;
   }
   for (const ColliderDef& collider : scene.colliders) {
-    if (collider.name == scene.camera.follow) return mesh;
+    if (collider.name == name) return mesh;
     ++mesh;
   }
   return mesh;
@@ -141,7 +141,7 @@ Bounds framed_box(const SceneDef& scene, const Stage& stage) {
 std::optional<Followed> followed_at(const SceneDef& scene, const Stage& stage,
                                     const std::vector<std::vector<float>>& positions) {
   if (scene.camera.follow.empty()) return std::nullopt;
-  const std::size_t mesh = followed_mesh(scene);
+  const std::size_t mesh = mesh_called(scene, scene.camera.follow);
   const bool known = mesh < positions.size() && !positions[mesh].empty();
   return Followed{mesh, known ? Vec3(mean_of(positions[mesh]) - stage.meshes[mesh].rest.center()) : Vec3(Vec3::Zero())};
 }
@@ -170,6 +170,16 @@ Camera camera_at(const SceneDef& scene, const Stage& stage, double time,
   if (def.position) camera.eye = *def.position + followed->moved;
   camera.target = center;
   return camera;
+}
+
+double focus_at(const SceneDef& scene, const Camera& camera, const std::vector<std::vector<float>>& positions) {
+  if (scene.camera.focus_distance) return *scene.camera.focus_distance;
+  const double to_target = (camera.target - camera.eye).norm();
+  if (scene.camera.focus_on.empty()) return to_target;
+  const std::size_t mesh = mesh_called(scene, scene.camera.focus_on);
+  if (mesh >= positions.size() || positions[mesh].empty()) return to_target;
+  const double distance = (mean_of(positions[mesh]) - camera.eye).dot(camera.target - camera.eye) / to_target;
+  return distance > 1e-3 * to_target ? distance : to_target;
 }
 
 double share_in_picture(const Camera& camera, const Stage& stage, const std::vector<float>& points) {

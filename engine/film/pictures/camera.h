@@ -28,6 +28,11 @@ std::optional<Followed> followed_at(const SceneDef& scene, const Stage& stage,
 Camera camera_at(const SceneDef& scene, const Stage& stage, double time,
                  const std::vector<std::vector<float>>& positions = {});
 
+// Returns the distance along the direction of the view at which the camera is focused [m]: that of the body or collider
+// that the scene names, by the middle of its vertices, or the scene's own; else that of the target. What a scene names
+// may lie beside or behind the eye, where nothing is seen of it; then the target is in focus, too.
+double focus_at(const SceneDef& scene, const Camera& camera, const std::vector<std::vector<float>>& positions);
+
 // Returns the share of some points, x y z of each [m], that lie within the borders of the camera's picture, whatever
 // hides them.
 double share_in_picture(const Camera& camera, const Stage& stage, const std::vector<float>& points);

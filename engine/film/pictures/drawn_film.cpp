@@ -20,6 +20,15 @@ bool changes_camera(const Script& script, int frame) {
                              [](const TimedChange* change) { return change->path.starts_with("camera"); });
 }
 
+bool changes_shutter(const TimedChange& change) {
+  return change.path == "camera" || change.path.starts_with("camera.shutter");
+}
+
+// Tells whether what moves is blurred in some frame of the film.
+bool opens_shutter(const Script& script) {
+  return script.scene().camera.shutter_deg > 0 || std::ranges::any_of(script.changes(), changes_shutter);
+}
+
 // Tells whether the camera moves in the film, of itself or because a replay moves it.
 bool moves_camera(const Script& script) {
   const SceneDef& scene = script.scene();
@@ -54,6 +63,7 @@ DrawnFilm::DrawnFilm(const Script& script, const std::vector<Body>& bodies, std:
   stage_ = make_stage(scene, bodies, drawn_, set.scene_colliders, collider_skins_, font);
   stage_.graphs = graph_looks(scene, 0);
   stage_.camera_moves = moves_camera(script);
+  opens_ = opens_shutter(script);
   if (scene.look.supports) supports_.emplace(bodies, stage_);
   if (!scene.look.ghost.empty()) add_ghosts(scene, bodies);
   if (scene.field.quantity != FieldQuantity::none) field_.emplace(scene, bodies);
@@ -120,6 +130,7 @@ void DrawnFilm::settle_field() {
 
 void DrawnFilm::follow(const std::vector<TimedChange>& changes, const CollisionSet& set,
                        const std::vector<Body>& bodies) {
+  opens_ = opens_ || std::ranges::any_of(changes, changes_shutter);
   for (std::size_t c = 0; c < set.scene_colliders.size(); ++c) {
     const std::string& name = set.scene_colliders[c].def.name;
     // The square that is drawn for a half space depends on the position of the half space.
@@ -151,11 +162,45 @@ void DrawnFilm::follow_colors(const SceneDef& scene, DrawList& list) {
   }
 }
 
+// Returns the positions of all meshes, in the order of the stage.
+std::vector<std::vector<float>> DrawnFilm::positions(const SceneDef& scene, const FramePose& pose,
+                                                     const CollisionSet& set, Threads& threads) {
+  DrawList list;
+  const std::size_t bodies = pose.motion.size();
+  for (std::size_t b = 0; b < bodies; ++b)
+    list.positions.push_back(skin_positions(drawn_[b], bodies_[b].description.mesh, *pose.motion[b], &threads));
+  add_colliders(set.scene_colliders, collider_skins_, pose.time, list);
+  if (supports_) supports_->add_to(list, scene, pose);
+  for (std::size_t b = 0; b < bodies && ghosts_; ++b)
+    list.positions.push_back(
+        skin_positions(drawn_[b], bodies_[b].description.mesh, ghosts_->at(b, pose.frame), &threads));
+  return std::move(list.positions);
+}
+
+// Returns what the scene's shutter and lens expose a picture to; nothing where they are for an instant and a point.
+std::optional<Exposure> DrawnFilm::exposure(const SceneDef& scene, const FramePose& pose, const CollisionSet& set,
+                                            const DrawList& list, Threads& threads) {
+  const CameraDef& camera = scene.camera;
+  if (camera.shutter_deg == 0 && camera.aperture == 0) return std::nullopt;
+  Exposure exposure;
+  exposure.aperture = camera.aperture;
+  exposure.focus = focus_at(scene, list.camera, list.positions);
+  exposure.samples = scene.output.blur_samples;
+  if (camera.shutter_deg == 0 || pose.before.empty()) return exposure;
+  FramePose before = pose;
+  before.motion = pose.before;
+  before.frame = std::max(0, pose.frame - 1);
+  before.time = std::max(0.0, pose.time - pose.interval.value_or(1 / scene.fps));
+  exposure.before = positions(scene, before, set, threads);
+  exposure.camera_before = camera_at(scene, stage_, before.time, exposure.before);
+  exposure.open = camera.shutter_deg / 360;
+  return exposure;
+}
+
 DrawList DrawnFilm::list(const SceneDef& scene, const FramePose& pose, const CollisionSet& set, Threads& threads) {
   DrawList result;
   const std::size_t bodies = pose.motion.size();
-  for (std::size_t b = 0; b < bodies; ++b)
-    result.positions.push_back(skin_positions(drawn_[b], bodies_[b].description.mesh, *pose.motion[b], &threads));
+  result.positions = positions(scene, pose, set, threads);
   for (std::size_t b = 0; b < bodies; ++b)
     result.hollow.push_back(cloth_hollows(drawn_[b], bodies_[b], *pose.motion[b]));
   if (field_) {
@@ -163,13 +208,9 @@ DrawList DrawnFilm::list(const SceneDef& scene, const FramePose& pose, const Col
     for (std::size_t b = 0; b < bodies; ++b)
       result.field.push_back(values[b].empty() ? std::vector<float>() : field_->on_skin(drawn_[b], values[b]));
   }
-  add_colliders(set.scene_colliders, collider_skins_, pose.time, result);
-  if (supports_) supports_->add_to(result, scene, pose);
-  for (std::size_t b = 0; b < bodies && ghosts_; ++b)
-    result.positions.push_back(
-        skin_positions(drawn_[b], bodies_[b].description.mesh, ghosts_->at(b, pose.frame), &threads));
   result.camera = camera_at(scene, stage_, pose.time, result.positions);
   result.followed = followed_at(scene, stage_, result.positions);
+  result.exposure = exposure(scene, pose, set, result, threads);
   for (std::size_t b = 0; b < bodies && scene.look.marks; ++b)
     append_marks(bodies_[b], *pose.motion[b], set, pose.time, &threads, result.marks);
   result.headline = headline_text(scene, pose.time);

@@ -43,7 +43,7 @@ class DrawnFilm {
   }
 
   // Tells whether a pose must have the positions of the frame before.
-  bool needs_before() const { return field_ && field_->needs_before(); }
+  bool needs_before() const { return opens_ || (field_ && field_->needs_before()); }
   // Tells whether a pose must have the forces of colliders.
   bool needs_forces() const { return field_ && field_->needs_forces(); }
   // Widens the range of the field to a frame of the film. The colours are those of the whole film once all frames have
@@ -63,6 +63,10 @@ class DrawnFilm {
   void know_times(std::span<const FrameRow> rows);
 
  private:
+  std::vector<std::vector<float>> positions(const SceneDef& scene, const FramePose& pose, const CollisionSet& set,
+                                            Threads& threads);
+  std::optional<Exposure> exposure(const SceneDef& scene, const FramePose& pose, const CollisionSet& set,
+                                   const DrawList& list, Threads& threads);
   void show_field();
   void make_room();
   void add_ghosts(const SceneDef& scene, const std::vector<Body>& bodies);
@@ -75,6 +79,7 @@ class DrawnFilm {
   std::optional<DrawnSupports> supports_;  // where the scene shows them
   std::optional<ReferenceRun> ghosts_;     // the run whose bodies are the stage's last meshes
   std::optional<SurfaceField> field_;      // where the scene shows one
+  bool opens_ = false;                     // whether the shutter is open for more than an instant in some frame
   Stage stage_;
   double longest_steps_ = 0;          // the longest time of a frame's steps in the film [ms]; 0: not known
   std::vector<std::size_t> renewed_;  // colliders whose skins were made again since the last list

@@ -190,7 +190,10 @@ std::vector<double> SurfaceField::of_body(std::size_t body, const FramePose& pos
     if (pose.forces.empty() || pose.forces[body]->rows() == 0) return std::vector<double>(areas_[body].size(), 0.0);
     return per_area(*pose.forces[body], areas_[body]);
   }
-  if (def_.quantity == FieldQuantity::speed) return lengths(x - *pose.before[body], fps_);
+  if (def_.quantity == FieldQuantity::speed) {
+    const double per_second = pose.interval ? 1 / *pose.interval : fps_;
+    return lengths(x - *pose.before[body], per_second);
+  }
   return lengths(x - reference_->at(body, pose.frame), 1);
 }
 

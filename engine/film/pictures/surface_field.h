@@ -23,14 +23,15 @@ namespace supple {
 struct FramePose {
   int frame = 0;
   double time = 0;  // at the end of the frame [s]
-  // These lists have one entry for each body, by vertex of its mesh [m]. `before` is empty where the field does not
-  // need it.
+  // These lists have one entry for each body, by vertex of its mesh [m]. `before` is of the frame before; it is empty
+  // where neither the field nor the shutter needs it.
   std::vector<const Positions*> motion, before;
   // The forces of colliders at the end of the frame: for each body, by vertex of its mesh [N]. Empty where the field
   // does not need them or where there are no colliders.
   std::vector<const Positions*> forces = {};
   const FrameRow* row = nullptr;             // row of the frame in the run's profile; null where it is not known
   std::span<const GraphPoint> earlier = {};  // points of all earlier frames; empty where the pictures have no graphs
+  std::optional<double> interval = {};       // since the positions of `before`; nothing: that of a frame [s]
 };
 
 class SurfaceField {

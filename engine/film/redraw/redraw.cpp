@@ -8,16 +8,14 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "base/frame_time.h"
 #include "base/interrupts.h"
-#include "base/motion_hull.h"
 #include "base/text.h"
-#include "base/threads.h"
 #include "film/pictures/drawn_film.h"
 #include "film/pictures/reference_run.h"
 #include "film/plan/film_coding.h"
 #include "film/plan/shipped_files.h"
 #include "film/record/film_identity.h"
+#include "film/redraw/run_lists.h"
 #include "output/files/folder_lock.h"
 #include "output/files/json_text.h"
 #include "output/files/obj_file.h"
@@ -43,6 +41,7 @@ constexpr std::array seen = {"title",
                              "output.width",
                              "output.height",
                              "output.samples",
+                             "output.blur_samples",
                              "output.passes",
                              "body[].color",
                              "body[].back_color",
@@ -119,11 +118,11 @@ void check_same_motion(const DrawPlan& plan, const Json& info, const LoadedFilm&
     const bool seen_output =
         difference.path == "output" && (difference.a + difference.b).find("energy") == std::string::npos;
     if (seen_output) continue;
-    problems.push_back(
-        {film.info.scene_file, 0, 0,
-         fmt::format("{} is {} here and was {} in the run: only what is seen may differ (camera, look, "
-                     "output's width, height, samples and passes, colours, labels, patterns, colliders being visible)",
-                     difference.path, difference.b, difference.a)});
+    problems.push_back({film.info.scene_file, 0, 0,
+                        fmt::format("{} is {} here and was {} in the run: only what is seen may differ (camera, look, "
+                                    "output's width, height, samples, blur_samples and passes, colours, labels, "
+                                    "patterns, colliders being visible)",
+                                    difference.path, difference.b, difference.a)});
   }
   if (simulated_part(member_text(info, "replay")) != simulated_part(film.info.replay_json))
     problems.push_back({film.info.scene_file, 0, 0, "the replay changes other values than it did in the run"});
@@ -188,99 +187,18 @@ std::vector<int> frames_of(const DrawPlan& plan, int count) {
   return frames;
 }
 
-// Makes draw lists of chosen frames, in ascending order.
-class Drawing {
- public:
-  explicit Drawing(LoadedDrawing& drawing)
-      : drawing_(drawing),
-        world_(drawing.film.world),
-        drawn_(world_.script(), world_.bodies(), drawing.film.drawn, world_.colliders(), caption_font()),
-        threads_(drawing.film.info.threads) {
-    drawn_.know_times(drawing.rows);
-    for (const FrameRow& row : drawing.rows) graphed_.push_back(graph_point(row));
-    const bool field = scene().field.quantity != FieldQuantity::none && scene().field.range_by == FieldRange::film;
-    const std::vector<Vec3>& framed = drawing.film.info.framed;
-    const bool finds = framed.empty() && wants_motion(scene());
-    const bool shows = wants_motion(scene()) || scene().camera.frames == Framed::automatic;
-    if (!framed.empty() && shows) drawn_.frame_motion(framed);
-    if (field || finds) span_film(field, finds);
-  }
-
-  const Stage& stage() const { return drawn_.stage(); }
-  DrawnFilm& drawn() { return drawn_; }
-
-  DrawList list(int frame) {
-    enter(frame);
-    load(frame);
-    return drawn_.list(scene(), pose(frame), world_.colliders(), threads_);
-  }
-
- private:
-  // Finds the range of the field and the box of the motion over all frames of the run, so that each picture has the
-  // same colours and the same camera, whichever frames are drawn and in how many parts.
-  void span_film(bool field, bool camera) {
-    MotionHull hull;
-    for (int frame = 0; frame < drawing_.frame_count && !interrupted(); ++frame) {
-      enter(frame);
-      load(frame);
-      if (field) drawn_.include_in_field(pose(frame), world_.colliders(), threads_);
-      for (const Positions& body : motion_) hull.include(body);
-    }
-    if (field) drawn_.settle_field();
-    if (camera) drawn_.frame_motion(hull.points());
-    rewind();
-  }
-
-  // Goes back to the start of the film.
-  void rewind() {
-    world_.rewind();
-    drawn_.follow(world_.script().changes(), world_.colliders(), world_.bodies());
-  }
-
-  Positions motion_at(std::size_t body, int frame) {
-    if (frame >= 0) return saved_positions(drawing_, body, frame);
-    const Vec3 origin = motion_origin(world_.bodies()[body].description.mesh.rest);
-    const Positions first = first_positions(world_.bodies()[body]).rowwise() - origin.transpose();
-    return as_cached(first).rowwise() + origin.transpose();
-  }
-
-  void load(int frame) {
-    motion_.clear();
-    before_.clear();
-    forces_.clear();
-    for (std::size_t b = 0; b < drawing_.motion.size(); ++b) {
-      motion_.push_back(motion_at(b, frame));
-      if (drawn_.needs_before()) before_.push_back(motion_at(b, frame - 1));
-    }
-    for (ForceFileReader& body : drawing_.forces) forces_.push_back(body.frame(frame));
-  }
-
-  FramePose pose(int frame) const {
-    FramePose pose{frame, frame_time(frame, scene().fps), {}, {}};
-    for (const Positions& body : motion_) pose.motion.push_back(&body);
-    for (const Positions& body : before_) pose.before.push_back(&body);
-    for (const Positions& body : forces_) pose.forces.push_back(&body);
-    const std::vector<FrameRow>& rows = drawing_.rows;
-    pose.earlier = std::span(graphed_).first(std::min(graphed_.size(), std::size_t(frame)));
-    if (std::size_t(frame) < rows.size()) pose.row = &rows[std::size_t(frame)];
-    return pose;
-  }
-
-  // Advances the world to the end of the frame.
-  void enter(int frame) {
-    const std::vector<TimedChange> changes = world_.enter(frame);
-    if (!changes.empty()) drawn_.follow(changes, world_.colliders(), world_.bodies());
-  }
-  const SceneDef& scene() const { return world_.scene(); }
-
-  LoadedDrawing& drawing_;
-  World& world_;  // its positions come from the files of the run
-  DrawnFilm drawn_;
-  Threads threads_;
-  std::vector<Positions> motion_, before_;  // of the frame that was loaded, and of the one before it [m]
-  std::vector<Positions> forces_;           // of colliders, where they are needed [N]
-  std::vector<GraphPoint> graphed_;         // points of all frames
-};
+// Refuses pictures between the frames of the run where they would need another run's motion between its frames.
+void check_smooth(const DrawPlan& plan, const SceneDef& scene) {
+  if (plan.smooth == 1) return;
+  const char* other = !scene.look.ghost.empty()                         ? "look.ghost"
+                      : scene.field.quantity == FieldQuantity::distance ? "field distance"
+                                                                        : nullptr;
+  if (other != nullptr)
+    throw InputError(fmt::format("--smooth {}", plan.smooth),
+                     fmt::format("draws between the frames of the run, and {} has the other run's frames alone: leave "
+                                 "one of the two out",
+                                 other));
+}
 
 }  // namespace
 
@@ -288,9 +206,10 @@ LoadedDrawing load_drawing(const DrawPlan& plan) {
   const RunRecord run = read_run(plan.run);
   const Json info = parsed_json<Json>(run.info_json);
   const FilmPlan film = plan_of_run(plan, info);
-  LoadedDrawing drawing{load_film(film, {}), {}, {}, {}, 0, {}, 0, {}};
+  LoadedDrawing drawing{load_film(film, {}), {}, {}, {}, 0, {}, plan.smooth, 0, {}};
   check_same_motion(plan, info, drawing.film);
   check_passes(drawing.film.world.script().scene());
+  check_smooth(plan, drawing.film.world.script().scene());
   drawing.film.info.framed = framed_in(run.info_json);
   make_skins(film, drawing.film);
   drawing.motion = motion_of(run, drawing.film);
@@ -307,9 +226,21 @@ LoadedDrawing load_drawing(const DrawPlan& plan) {
       {"rate", drawing.rate},
       {"gl", name_of(plan.gl)},
       {"scene", json_if_valid<Json>(drawing.film.info.scene_json)}};
+  if (plan.smooth > 1) identity["smooth"] = plan.smooth;
   if (!drawing.film.info.replay_json.empty()) identity["replay"] = json_if_valid<Json>(drawing.film.info.replay_json);
   drawing.identity = json_text(identity, 1) + "\n";
   return drawing;
+}
+
+int picture_count(const LoadedDrawing& drawing) {
+  return (static_cast<int>(drawing.frames.size()) - 1) * drawing.smooth + 1;
+}
+
+Moment moment_of(const LoadedDrawing& drawing, int picture) {
+  const int every = drawing.frames.size() > 1 ? drawing.frames[1] - drawing.frames[0] : 1;
+  const long long parts = static_cast<long long>(picture) * every;
+  return {drawing.frames.front() + static_cast<int>(parts / drawing.smooth),
+          static_cast<double>(parts % drawing.smooth) / drawing.smooth};
 }
 
 Positions saved_positions(LoadedDrawing& drawing, std::size_t body, int frame) {
@@ -346,16 +277,16 @@ void open_drawing(const std::filesystem::path& folder, const LoadedDrawing& draw
 }
 
 PictureRange part_of(const LoadedDrawing& drawing, int index, int count) {
-  const auto pictures = static_cast<long long>(drawing.frames.size());
+  const auto pictures = static_cast<long long>(picture_count(drawing));
   return {static_cast<int>(pictures * index / count), static_cast<int>(pictures * (index + 1) / count)};
 }
 
-Eigen::Vector2d field_range(LoadedDrawing& drawing) { return Drawing(drawing).drawn().field_range(); }
+Eigen::Vector2d field_range(LoadedDrawing& drawing) { return RunLists(drawing).drawn().field_range(); }
 
 DrawResult draw_pictures(const DrawPlan& plan, LoadedDrawing& drawing, const std::filesystem::path& folder,
                          PictureRange range, VideoEncoder* video, const std::function<void(int done)>& told) {
   DrawResult result;
-  Drawing lists(drawing);
+  RunLists lists(drawing);
   result.legend = lists.drawn().field_look();
   if (plan.legend_apart && result.legend) lists.drawn().hide_legend();
   const std::vector<PicturePass>& passes = drawing.film.world.script().scene().output.passes;
@@ -366,12 +297,12 @@ DrawResult draw_pictures(const DrawPlan& plan, LoadedDrawing& drawing, const std
       result.end = FilmEnd::interrupted;
       break;
     }
-    if (!pictures.put(picture, lists.list(drawing.frames[picture]))) break;
+    if (!pictures.put(picture, lists.list(moment_of(drawing, picture)))) break;
     result.pictures += static_cast<int>(pictures.take_written().size());
     told(result.pictures);
   }
-  const bool part = result.end == FilmEnd::done && range.last < static_cast<int>(drawing.frames.size());
-  if (part && pictures.want_next()) pictures.put_next(range.last, lists.list(drawing.frames[range.last]));
+  const bool part = result.end == FilmEnd::done && range.last < picture_count(drawing);
+  if (part && pictures.want_next()) pictures.put_next(range.last, lists.list(moment_of(drawing, range.last)));
   pictures.finish();
   result.pictures += static_cast<int>(pictures.take_written().size());
   told(result.pictures);
@@ -381,14 +312,14 @@ DrawResult draw_pictures(const DrawPlan& plan, LoadedDrawing& drawing, const std
 }
 
 Image draw_still(const DrawPlan& plan, LoadedDrawing& drawing, int frame) {
-  Drawing lists(drawing);
-  return Renderer(lists.stage(), plan.gl, shaders_folder()).draw(lists.list(frame));
+  RunLists lists(drawing);
+  return Renderer(lists.stage(), plan.gl, shaders_folder()).draw(lists.list({frame, 0}));
 }
 
 std::vector<int> missing_pictures(const LoadedDrawing& drawing, const std::filesystem::path& folder) {
   std::vector<int> missing;
   std::error_code error;
-  for (int picture = 0; picture < static_cast<int>(drawing.frames.size()); ++picture) {
+  for (int picture = 0; picture < picture_count(drawing); ++picture) {
     if (!std::filesystem::exists(picture_file(folder / "frames", picture), error)) missing.push_back(picture);
   }
   return missing;

@@ -23,7 +23,8 @@ struct DrawPlan {
   std::filesystem::path scene;          // the scene's file, where it is not where the run found it; else empty
   std::vector<std::string> settings;    // path=value, in place of the run's values; only of what is seen
   int first = 0, last = -1, every = 1;  // frames of the run; last < 0: the run's last frame
-  double rate = 0;                      // frames a second of the film; 0: as fast as it happened
+  int smooth = 1;                       // pictures for each of these frames; those between are interpolated
+  double rate = 0;  // frames a second of the film; 0: one frame of the run, or part of one, a picture
   GlChoice gl = GlChoice::automatic;
   bool legend_apart = false;  // pictures have no legend; the result holds it
   bool cache = true;          // of meshes and skins
@@ -37,7 +38,8 @@ struct LoadedDrawing {
   std::vector<ForceFileReader> forces;  // forces of colliders on each body; empty where the drawing does not need them
   std::vector<FrameRow> rows;           // of the run's profile; empty while it goes on
   int frame_count = 0;                  // of the run
-  std::vector<int> frames;              // of the run, one for each picture
+  std::vector<int> frames;              // of the run, that are drawn
+  int smooth = 1;                       // pictures for each of them but the last
   double rate = 0;                      // frames a second of the film
   std::string identity;                 // JSON: all that the pictures depend on
 };
@@ -45,6 +47,14 @@ struct LoadedDrawing {
 // Reads the run, its scene and its meshes. Throws InputError when the folder does not hold a run with all its motion,
 // when the scene differs from the run's in more than what is seen, and when a mesh is not the run's.
 LoadedDrawing load_drawing(const DrawPlan& plan);
+
+// Names a time of the run: a frame, and the share of the way to the next one.
+struct Moment {
+  int frame;
+  double share;
+};
+int picture_count(const LoadedDrawing& drawing);
+Moment moment_of(const LoadedDrawing& drawing, int picture);
 
 // Returns the positions of a body's mesh that the run saved for a frame [m].
 Positions saved_positions(LoadedDrawing& drawing, std::size_t body, int frame);

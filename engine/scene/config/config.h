@@ -278,6 +278,12 @@ class ConfigTable {
   // Returns a number, or nothing when the key is absent or has the value `word`.
   std::optional<double> number_or_word(const Key& key, const char* word, const Range& range) const;
 
+  // Returns a text or a number, or nothing when the key is absent or wrong. `texts`: what the text is, such as "name of
+  // a body". `fallback`: what holds without the key.
+  std::optional<std::variant<std::string, double>> text_or_number_if_given(const Key& key, const char* texts,
+                                                                           const Range& range,
+                                                                           const char* fallback) const;
+
   // Records a problem at a key's value, or at this table.
   void complain(const char* key, const std::string& message) const;
   void complain(const std::string& message) const;

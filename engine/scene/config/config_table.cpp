@@ -504,4 +504,17 @@ std::optional<double> ConfigTable::number_or_word(const Key& key, const char* wo
   return std::nullopt;
 }
 
+std::optional<std::variant<std::string, double>> ConfigTable::text_or_number_if_given(const Key& key, const char* texts,
+                                                                                      const Range& range,
+                                                                                      const char* fallback) const {
+  const std::string allowed = fmt::format("{}, or {}", texts, range.text());
+  const toml::node* node = find(key, "text or number", fallback, allowed);
+  if (node == nullptr) return std::nullopt;
+  if (const auto text = node->value_exact<std::string>(); text && !text->empty()) return *text;
+  const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;
+  if (value && is_usable(*value) && range.contains(*value)) return *value;
+  wrong(key, *node, allowed);
+  return std::nullopt;
+}
+
 }  // namespace supple

@@ -279,6 +279,11 @@ struct CameraDef {
   std::string follow;            // the body or collider that the camera moves along with; empty: none
   Ease ease = Ease::smooth;
   std::vector<CameraKey> keys;  // in order of time
+  double shutter_deg = 0;       // how much of a frame the shutter is open, of 360; 0: for an instant
+  double aperture = 0;          // diameter of the lens; 0: all is sharp [m]
+  // What is sharp: a body or collider, or this distance along the direction of the view [m]; neither: the target.
+  std::string focus_on;
+  std::optional<double> focus_distance;
 
   bool moves() const { return orbit_deg != 0 || !keys.empty(); }
   // Tells whether the scene says where the camera stands, so that nothing else decides what is in the picture.
@@ -380,6 +385,7 @@ struct OutputDef {
   int height = 720;
   double aspect = 0;                     // width over height for which the camera was placed; 0: those of the pictures
   int samples = 4;                       // of antialiasing, a pixel
+  int blur_samples = 0;                  // pictures that one with blur is the mean of; 0: as many as the blur asks for
   bool energy = false;                   // whether kinetic, elastic and gravitational energy are computed each frame
   std::vector<PicturePass> passes = {};  // pictures in numbers beside those of the film, in ascending order
 };

@@ -62,6 +62,23 @@ void check_together(const ConfigTable& table, const CameraDef& camera) {
     table.complain("target", "target: must not be the camera's own position");
 }
 
+void read_lens(const ConfigTable& table, CameraDef& camera) {
+  camera.shutter_deg = table.number({"shutter", "degrees",
+                                     "how much of the time since the frame before the shutter is open, of 360: what "
+                                     "moves meanwhile is blurred; 180 is usual in films"},
+                                    camera.shutter_deg, Range::between(0, 360));
+  camera.aperture = table.number({"aperture", "m",
+                                  "diameter of the lens: what is nearer or farther than the focus is blurred, at twice "
+                                  "the focus's distance by half of this; 0: all is sharp"},
+                                 camera.aperture, Range::between(0, 1e4));
+  const auto focus = table.text_or_number_if_given(
+      {"focus", "m", "what is sharp: a body or collider, by its middle, or a distance from the eye"},
+      "the name of a body or collider", Range::positive(), "the target");
+  if (!focus) return;
+  if (const auto* name = std::get_if<std::string>(&*focus)) camera.focus_on = *name;
+  if (const auto* distance = std::get_if<double>(&*focus)) camera.focus_distance = *distance;
+}
+
 }  // namespace
 
 CameraDef read_camera(const ConfigTable& table, CameraDef camera) {
@@ -87,6 +104,7 @@ CameraDef read_camera(const ConfigTable& table, CameraDef camera) {
   camera.follow = table.text({"follow", "", "name of a body or collider with which eye and target move along"}, "");
   camera.ease = read_ease(table);
   camera.keys = read_camera_keys(table);
+  read_lens(table, camera);
   check_together(table, camera);
   return camera;
 }

@@ -89,13 +89,13 @@ SceneDef read_scene(Config& config) {
 
   if (const auto camera = root.table({"camera", "", "where the film is seen from"})) {
     scene.camera = read_camera(*camera, scene.camera);
-    const bool known =
-        scene.camera.follow.empty() || names.contains(scene.camera.follow) || colliders.contains(scene.camera.follow);
     std::vector<std::string> all(names.begin(), names.end());
     all.insert(all.end(), colliders.begin(), colliders.end());
-    if (!known)
-      camera->complain("follow", fmt::format("follow: no body or collider is called '{}'{}", scene.camera.follow,
-                                             did_you_mean(scene.camera.follow, all)));
+    for (const auto& [key, name] : {std::pair{"follow", scene.camera.follow}, {"focus", scene.camera.focus_on}}) {
+      if (name.empty() || names.contains(name) || colliders.contains(name)) continue;
+      camera->complain(key,
+                       fmt::format("{}: no body or collider is called '{}'{}", key, name, did_you_mean(name, all)));
+    }
   }
   scene.look = read_look(root, scene.look);
   scene.field = read_field(root);
@@ -112,6 +112,10 @@ SceneDef read_scene(Config& config) {
                                            scene.output.samples, Range::between(1, 8));
     if ((scene.output.samples & (scene.output.samples - 1)) != 0)
       output->complain("samples", "samples: must be 1, 2, 4 or 8");
+    scene.output.blur_samples = output->integer({"blur_samples", "",
+                                                 "pictures of which one is the mean where camera.shutter or aperture "
+                                                 "blur it; 0: 16 to 128, as the blur asks for"},
+                                                scene.output.blur_samples, Range::between(0, 8192));
     scene.output.energy = output->boolean(
         {"energy", "", "kinetic, elastic and gravitational energy of each body, each frame, in profile.json"}, false);
     scene.output.passes = output->words<PicturePass>(
