@@ -110,6 +110,11 @@ std::string changes_text(const Script& script) {
   return text;
 }
 
+std::string deforming_text(const SurfaceMotionDef& motion, double scene_fps) {
+  return fmt::format(", deforms: {} frames at {:g} a second from {:g} s on", motion.motion->frames() - motion.first,
+                     motion.fps.value_or(scene_fps), motion.start);
+}
+
 }  // namespace
 
 std::string scene_summary(const SceneSource& source, int thread_count) {
@@ -128,7 +133,8 @@ std::string scene_summary(const SceneSource& source, int thread_count) {
   if (world.script().is_replay()) text += changes_text(world.script());
   for (const ColliderDef& collider : scene.colliders)
     text += fmt::format("collider        '{}', friction {:g}{}\n", collider.name, collider.friction,
-                        collider.keys.empty() ? "" : ", moves");
+                        collider.keys.empty() ? "" : ", moves") +
+            (collider.motion ? deforming_text(*collider.motion, scene.fps) : "");
   const std::vector<DrawnBody> drawn = drawn_bodies(world.bodies());
   std::vector<std::string> of_bodies;
   for (std::size_t b = 0; b < world.size(); ++b) of_bodies.push_back(body_text(world.body(b), drawn[b]));

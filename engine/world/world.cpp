@@ -249,6 +249,12 @@ void World::Parts::take_edits(LiveEdits edits) {
 }
 
 void World::prepare(int substep) {
+  const SceneDef& scene = parts_->scene;
+  const double done = static_cast<double>(parts_->frame) * scene.substeps + substep;
+  if (!parts_->colliders.deformed.empty()) {
+    const Zone zone("deform colliders");
+    deform_colliders(parts_->colliders, done * scene.time_step(), (done + 1) * scene.time_step());
+  }
   for (const auto& body : parts_->moving) body->prepare_step(parts_->frame, substep);
 }
 

@@ -77,7 +77,7 @@ double share_of_angles_below(const TriMesh& mesh, double degrees) {
   return below / double(3 * mesh.triangles.rows());
 }
 
-Vec3 point_at(const TriMesh& mesh, const SurfacePlace& place) {
+Vec3 point_at(const TriMesh& mesh, const RemeshedPlace& place) {
   Vec3 p = Vec3::Zero();
   for (int k = 0; k < 3; ++k) p += place.weights[k] * corner_of(mesh, place.triangle, k);
   return p;
@@ -105,7 +105,7 @@ void expect_sound(const TriMesh& input, const RemeshedSurface& result) {
   EXPECT_EQ(std::ssize(result.corners), result.mesh.triangles.rows());
   for (Eigen::Index t = 0; t < result.mesh.triangles.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
-      const SurfacePlace& place = result.corners[std::size_t(t)][std::size_t(k)];
+      const RemeshedPlace& place = result.corners[std::size_t(t)][std::size_t(k)];
       EXPECT_GE(place.weights.minCoeff(), 0);
       EXPECT_NEAR(place.weights.sum(), 1, 1e-12);
       EXPECT_LT((point_at(input, place) - corner_of(result.mesh, t, k)).norm(), 1e-12 * size);
@@ -338,7 +338,7 @@ TEST(Remeshed, CoordinatesOfATextureCrossNoSeam) {
   expect_even(result.mesh, 0.15);
   for (const auto& corners : result.corners) {
     double low = 1, high = 0;
-    for (const SurfacePlace& place : corners) {
+    for (const RemeshedPlace& place : corners) {
       const std::int32_t source = joined.triangle_source[std::size_t(place.triangle)];
       double own = 0;
       for (int k = 0; k < 3; ++k) own += place.weights[k] * u[std::size_t(cylinder.triangles(source, k))];
@@ -360,7 +360,7 @@ TEST(Remeshed, NearSheetsDoNotMix) {
   EXPECT_EQ(euler_characteristic(result.mesh), 4);
   for (const auto& corners : result.corners) {
     std::set<bool> sheets;
-    for (const SurfacePlace& place : corners) sheets.insert(place.triangle < outer.triangles.rows());
+    for (const RemeshedPlace& place : corners) sheets.insert(place.triangle < outer.triangles.rows());
     EXPECT_EQ(sheets.size(), 1u);
   }
 }
@@ -402,7 +402,7 @@ TEST(Remeshed, TornSurfacesKeepTheirPiecesAndHoles) {
       EXPECT_EQ(euler_characteristic(result.mesh), euler_characteristic(torn));
       EXPECT_LT(length_of_edges_with(result.mesh, 1), length_of_edges_with(torn, 1) * (1 + 1e-12));
       for (const auto& [edge, count] : edges_of(result.mesh)) EXPECT_LE(count, 2);
-      for (const SurfacePlace& place : result.places) EXPECT_LT(place.triangle, torn.triangles.rows());
+      for (const RemeshedPlace& place : result.places) EXPECT_LT(place.triangle, torn.triangles.rows());
     }
   }
 }

@@ -263,6 +263,7 @@ surface = "surfaces/stairs.obj"
 [[collider]]
 shape = {{}}
 keys = [{{ t = 0 }}]
+motion = {{}}
 [camera]
 keys = [{{ t = 0 }}]
 [look]

@@ -110,7 +110,7 @@ std::vector<Skin> collider_skins(const std::vector<SceneCollider>& colliders, co
 void add_colliders(const std::vector<SceneCollider>& colliders, const std::vector<Skin>& skins, double time,
                    DrawList& list) {
   for (std::size_t c = 0; c < colliders.size(); ++c)
-    list.positions.push_back(as_floats(at_pose(skins[c].rest.points, colliders[c].pose(time))));
+    list.positions.push_back(as_floats(at_pose(drawn_places(colliders[c], skins[c], time), colliders[c].pose(time))));
 }
 
 DrawMesh collider_mesh(const SceneCollider& collider, const Skin& skin) {

@@ -1,6 +1,7 @@
 #include "film/pictures/marked_vertices.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "geometry/shapes/shape_probe.h"
 
@@ -13,7 +14,10 @@ std::vector<double> depths_in(const Positions& x, const CollisionSet& set, doubl
   for (std::size_t c = 0; c < set.scene_colliders.size(); ++c) {
     const Collider& collider = set.colliders[c];
     const Eigen::Isometry3d to_local = set.scene_colliders[c].pose(time).inverse();
-    const ShapeProbe probe(collider.shape);
+    const SceneCollider& from_scene = set.scene_colliders[c];
+    const std::optional<Shape> deformed =
+        from_scene.def.motion ? std::optional(from_scene.shape_at(time)) : std::nullopt;
+    const ShapeProbe probe(deformed ? *deformed : collider.shape);
     run_chunks(threads, static_cast<int>((x.rows() + chunk - 1) / chunk), 200 * x.rows(), [&](int number) {
       QueryMemory near;
       for (Eigen::Index v = number * chunk; v < std::min(x.rows(), (number + 1) * chunk); ++v) {

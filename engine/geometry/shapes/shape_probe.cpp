@@ -43,6 +43,17 @@ std::optional<SurfacePoint> ShapeProbe::closest_within(const Vec3& p, double mos
   return found ? std::optional(in_frame_of_shape(p, *found)) : std::nullopt;
 }
 
+Vec3 ShapeProbe::carried(const Vec3& p, const SurfaceMove& move) const {
+  const Vec3 from = local(p), to = move.carried(from);
+  return p + surface_->scale * (surface_->to_local.linear().transpose() * (to - from));
+}
+
+Eigen::Isometry3d ShapeProbe::motion_near(const Vec3& p, const SurfaceMove& move) const {
+  Eigen::Isometry3d own = move.motion_near(local(p));
+  own.translation() *= surface_->scale;
+  return surface_->to_local.inverse() * own * surface_->to_local;
+}
+
 SurfacePoint ShapeProbe::in_frame_of_shape(const Vec3& p, const SurfacePoint& found) const {
   const Mat3 turn = surface_->to_local.linear().transpose();
   return {p - surface_->scale * (turn * (local(p) - found.point)), turn * found.normal,

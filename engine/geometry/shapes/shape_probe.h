@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "geometry/shapes/shape.h"
+#include "geometry/solids/surface_move.h"
 
 namespace supple {
 
@@ -35,6 +36,12 @@ class ShapeProbe {
   // Returns which share of the way from a, which lies outside, to b leads to where it first enters; nothing when it
   // does not. Only for shapes that know entries.
   std::optional<double> entry(const Vec3& a, const Vec3& b) const { return solid_->entry(local(a), local(b)); }
+
+  // These tell how the surface carries what is near it along in a step, in the shape's frame: a place, a bound above
+  // the way of any place, and the rigid motion near a place. Only for shapes that know entries.
+  Vec3 carried(const Vec3& p, const SurfaceMove& move) const;
+  double most_carried(const SurfaceMove& move) const { return surface_->scale * move.most_carried(); }
+  Eigen::Isometry3d motion_near(const Vec3& p, const SurfaceMove& move) const;
 
   // Returns the solid whose answers a memory keeps; null for other shapes, which have no use for one.
   std::shared_ptr<const TriangleSolid> remembered() const;

@@ -35,6 +35,7 @@ struct Skin {
   // Numbers by vertex, if there are colours: vertices with the same one were one before colours split it, and have one
   // normal.
   std::vector<std::int32_t> smooth;
+  std::vector<std::int32_t> vertex_of;  // of a collider that deforms: its solid's vertex by vertex; else empty
 };
 
 // Contours the shape with cells of the given size [m] (surface_nets.h) and moves the vertices onto the zero set.

@@ -106,8 +106,9 @@ std::string SurfaceOptions::text() const {
   return text;
 }
 
-TriMesh set_up(TriMesh raw, const SurfaceOptions& options) {
-  Positions& points = raw.points;
+namespace {
+
+void turn_and_scale(Positions& points, const SurfaceOptions& options) {
   // A turn by a right angle exchanges coordinates, and needs no arithmetic.
   if (options.up == UpAxis::z) {
     points.col(1).swap(points.col(2));
@@ -117,14 +118,45 @@ TriMesh set_up(TriMesh raw, const SurfaceOptions& options) {
     points.col(0) *= -1;
   }
   if (options.unit != LengthUnit::metre) points *= metres(options.unit);
-  if (options.size == 0 && !options.center) return raw;
+}
+
+// turned: the triangles after turn_and_scale().
+SetUp placed_by_box(const TriMesh& turned, const SurfaceOptions& options) {
+  SetUp result{options};
+  if (options.size == 0 && !options.center) return result;
   Bounds box;
-  for (const std::int32_t v : raw.triangles.reshaped())
-    if (v >= 0 && v < points.rows() && points.row(v).allFinite()) box.include(points.row(v).transpose());
-  if (box.empty()) return raw;  // whoever uses the triangles refuses them
-  if (options.center) points.rowwise() -= Eigen::RowVector3d(box.center().x(), box.lower.y(), box.center().z());
+  for (const std::int32_t v : turned.triangles.reshaped())
+    if (v >= 0 && v < turned.points.rows() && turned.points.row(v).allFinite())
+      box.include(turned.points.row(v).transpose());
+  if (box.empty()) return result;  // whoever uses the triangles refuses them
+  if (options.center) result.shift = Eigen::RowVector3d(box.center().x(), box.lower.y(), box.center().z());
   const double longest = box.extent().maxCoeff();
-  if (options.size > 0 && longest > 0) points *= options.size / longest;
+  if (options.size > 0 && longest > 0) result.factor = options.size / longest;
+  return result;
+}
+
+void shift_and_scale(Positions& points, const SetUp& by) {
+  if (by.options.center) points.rowwise() -= by.shift;
+  if (by.factor != 1) points *= by.factor;
+}
+
+}  // namespace
+
+Positions SetUp::placed(Positions points) const {
+  turn_and_scale(points, options);
+  shift_and_scale(points, *this);
+  return points;
+}
+
+SetUp set_up_of(const TriMesh& raw, const SurfaceOptions& options) {
+  TriMesh turned = raw;
+  turn_and_scale(turned.points, options);
+  return placed_by_box(turned, options);
+}
+
+TriMesh set_up(TriMesh raw, const SurfaceOptions& options) {
+  turn_and_scale(raw.points, options);
+  shift_and_scale(raw.points, placed_by_box(raw, options));
   return raw;
 }
 

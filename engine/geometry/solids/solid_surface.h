@@ -51,6 +51,16 @@ struct SurfaceOptions {
   std::string text() const;
 };
 
+// Says how the options turn, scale and move the triangles of one file, for other places of the same file.
+struct SetUp {
+  SurfaceOptions options;
+  Eigen::RowVector3d shift = Eigen::RowVector3d::Zero();  // in metres, after the turn and before `factor`
+  double factor = 1;
+
+  Positions placed(Positions points) const;
+};
+SetUp set_up_of(const TriMesh& raw, const SurfaceOptions& options);
+
 // Returns the triangles turned, scaled and moved as the options say; the same bits where they say nothing.
 TriMesh set_up(TriMesh raw, const SurfaceOptions& options);
 

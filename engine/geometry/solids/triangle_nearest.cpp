@@ -115,6 +115,11 @@ TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p, std::int32_t likely
   return best;
 }
 
+SurfacePlace TriangleSolid::place(const Vec3& p) const {
+  const Nearest found = nearest(p, -1, infinity);
+  return {found.triangle, found.v, found.w};
+}
+
 SurfacePoint TriangleSolid::closest(const Vec3& p) const {
   // Seen from very far away, all points of the surface are equally distant up to round-off, and squares overflow, so
   // the query starts from a nearer point.

@@ -231,7 +231,12 @@ std::vector<Eigen::Index> TriangleSolid::one_of_each_component() const {
 // distance computation using the angle weighted pseudonormal, 2005. Overlapping parts, of which some lie inside others,
 // need the winding number.
 void TriangleSolid::prepare_sides() {
-  if (!lids_.empty() || !find_neighbours() || crosses_itself()) return;
+  has_neighbours_ = lids_.empty() && find_neighbours();
+  if (has_neighbours_) decide_sides();
+}
+
+void TriangleSolid::decide_sides() {
+  if (crosses_itself()) return;
   for (const Eigen::Index t : one_of_each_component()) {
     const Vec3 middle = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3;
     const double edge = (corner(t, 1) - corner(t, 0)).norm();

@@ -97,25 +97,35 @@ void TriangleSolid::build_tree() {
     leaves_.push_back(leaf_of(order.subspan(first, std::min<std::size_t>(width, order.size() - first))));
 }
 
-TriangleSolid::TriangleSolid(TriMesh surface) : surface_(std::move(surface)), bounds_(bounds_of(surface_.points)) {
+TriangleSolid::TriangleSolid(TriMesh surface) : surface_(std::move(surface)) {
   SUPPLE_CHECK(surface_.triangles.rows(), >, 0);
+  measure_size();
+  close_holes();
+  find_normals();
+  build_tree();
+  prepare_sides();
+}
+
+void TriangleSolid::measure_size() {
+  bounds_ = bounds_of(surface_.points);
   // Both ends of (p - t) carry the round-off of the coordinates; at 1e-11 of their size, its direction keeps four good
   // digits.
   on_surface_ = 1e-11 * std::max(bounds_.lower.cwiseAbs().maxCoeff(), bounds_.upper.cwiseAbs().maxCoeff());
   certainty_ = 1e-7 * bounds_.diagonal() + on_surface_;
-  close_holes();
+}
+
+void TriangleSolid::find_normals() {
   normals_.resize(surface_.triangles.rows(), 3);
   for (Eigen::Index t = 0; t < normals_.rows(); ++t) {
     const Vec3 n = (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0));
     const double length = n.stableNorm();
     normals_.row(t) = length > 0 ? Eigen::RowVector3d((n / length).transpose()) : Eigen::RowVector3d::UnitY();
   }
-  build_tree();
-  prepare_sides();
 }
 
 // Any single apex will do: open edges form closed lines, so that the other sides of these triangles cancel.
 void TriangleSolid::close_holes() {
+  lids_.clear();
   const auto open = open_edges(surface_.triangles);
   Vec3 apex = Vec3::Zero();
   for (const auto& [from, to] : open) apex += surface_.points.row(from).transpose() / double(open.size());

@@ -38,6 +38,12 @@ struct QueryMemory {
   std::int32_t oldest = 0;  // of the two, which the next one replaces
 };
 
+// Names the point a + v ab + w ac of a triangle.
+struct SurfacePlace {
+  std::int32_t triangle;
+  double v, w;
+};
+
 // Names leaves of a solid's tree, among which the closest triangle lies for all places near each other.
 struct NearLeaves {
   std::array<std::int32_t, 12> leaf;
@@ -49,12 +55,20 @@ class TriangleSolid {
  public:
   // The triangles must have an area, face outward, and have coordinates within +-1e50 (closed_surface ensures this).
   explicit TriangleSolid(TriMesh surface);
+  TriangleSolid(TriangleSolid&&) = default;
+
+  // Returns the solid of the same triangles with their vertices elsewhere: quicker than a new one, and with its answers
+  // up to round-off. usual_half_thickness() stays what it is here.
+  std::shared_ptr<const TriangleSolid> moved(Positions points) const;
 
   // Accepts any finite point. The distance is exact up to round-off of the surface's coordinates.
   SurfacePoint closest(const Vec3& p) const;
 
-  // Does the same for a caller that asks about places near each other. The side is found from the surface's normals
-  // where that is safe, and otherwise as above.
+  // Returns the place of the surface that is closest to p.
+  SurfacePlace place(const Vec3& p) const;
+
+  // Does the same as closest(p) for a caller that asks about places near each other. The side is found from the
+  // surface's normals where that is safe, and otherwise as above.
   SurfacePoint closest(const Vec3& p, QueryMemory& near) const;
 
   // Does the same, but returns nothing where the surface is certainly further away than `most`.
@@ -123,6 +137,13 @@ class TriangleSolid {
     double v, w;
   };
   using Corners = std::array<Vec3, 3>;
+  struct Extent;
+
+  TriangleSolid(const TriangleSolid&) = default;
+  void measure_size();
+  void find_normals();
+  void refit();
+  Extent extent_of(const Leaf& leaf) const;
 
   Vec3 corner(Eigen::Index triangle, int k) const { return surface_.points.row(surface_.triangles(triangle, k)); }
   Corners corners(Eigen::Index triangle) const {
@@ -145,6 +166,7 @@ class TriangleSolid {
   bool crosses_itself() const;
   bool pierced_by(std::int32_t from, std::int32_t to) const;
   void prepare_sides();
+  void decide_sides();
   void close_holes();
   bool inside(const Vec3& p) const;
   int crossings(const Vec3& p) const;
@@ -155,7 +177,7 @@ class TriangleSolid {
     std::once_flag once;
     double usual_half_thickness = 0;  // [m]
   };
-  std::unique_ptr<Measured> measured_ = std::make_unique<Measured>();
+  std::shared_ptr<Measured> measured_ = std::make_shared<Measured>();  // shared with what moved() returns
   Bounds bounds_;
   double on_surface_ = 0;      // nearer than this, the vector to a query point has no reliable direction [m]
   double certainty_ = 0;       // what certain distances are shorter by, so that round-off can't make them wrong [m]
@@ -166,8 +188,9 @@ class TriangleSolid {
   Positions normals_;  // unit normals of the triangles
   // For sides by normals, where that is safe.
   bool sides_by_normals_ = false;
-  Triangles neighbours_;      // of each triangle across its edges from corner 0 to 1, from 1 to 2, and from 2 to 0
-  Positions vertex_normals_;  // sums of the triangles' normals, weighted by their angles
+  bool has_neighbours_ = false;  // whether every edge has exactly one neighbour
+  Triangles neighbours_;         // of each triangle across its edges from corner 0 to 1, from 1 to 2, and from 2 to 0
+  Positions vertex_normals_;     // sums of the triangles' normals, weighted by their angles
 };
 
 }  // namespace supple

@@ -33,7 +33,7 @@ struct RemeshOptions {
 };
 
 // Names a place on the input surface.
-struct SurfacePlace {
+struct RemeshedPlace {
   std::int32_t triangle;  // of the surface that was remeshed
   Vec3 weights;           // barycentric, of that triangle's corners; none is negative, and their sum is 1
 };
@@ -42,10 +42,10 @@ struct RemeshedSurface {
   TriMesh mesh;
   // By vertex: where it lies on the input. At a fold that is too sharp for the new edges and no crease, a vertex that
   // would turn triangles over stays off the input, and this is the nearest place.
-  std::vector<SurfacePlace> places;
+  std::vector<RemeshedPlace> places;
   // By triangle and corner: the same, but in a triangle of the input on this triangle's side of each line. What jumps
   // at a line, such as the coordinates of a texture at its seams, is interpolated at these.
-  std::vector<std::array<SurfacePlace, 3>> corners;
+  std::vector<std::array<RemeshedPlace, 3>> corners;
 };
 
 // Remeshes a surface. Vertices at the same position are one (welded_surface.h joins near ones); triangles without area

@@ -20,7 +20,7 @@ class PlaceSearch {
   }
 
   // Returns the place of a corner of a triangle, on the triangle's side of each line.
-  SurfacePlace place(const EditableSurface::Triangle& triangle, std::size_t k) const {
+  RemeshedPlace place(const EditableSurface::Triangle& triangle, std::size_t k) const {
     const EditableSurface::Vertex& vertex = edited_.vertex(triangle.corners[k]);
     if (vertex.is_free()) {
       return in_triangle(nearest(vertex.x, triangle, vertex.near), vertex.x);
@@ -62,7 +62,7 @@ class PlaceSearch {
     return both;
   }
 
-  SurfacePlace in_triangle(std::int32_t t, const Vec3& p) const {
+  RemeshedPlace in_triangle(std::int32_t t, const Vec3& p) const {
     const std::int32_t source = joined_.triangle_source[at(t)];
     return {source, weights_in_triangle(p, corner(surface_, source, 0), corner(surface_, source, 1),
                                         corner(surface_, source, 2))};
@@ -87,7 +87,7 @@ RemeshedSurface with_places(const EditableSurface& edited, const PatchProjection
   for (const EditableSurface::Triangle& t : edited.triangles()) {
     if (t.is_gone()) continue;
     std::array<std::int32_t, 3>& now = triangles.emplace_back();
-    std::array<SurfacePlace, 3>& places = result.corners.emplace_back();
+    std::array<RemeshedPlace, 3>& places = result.corners.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
       std::int32_t& number = compact[at(t.corners[k])];
       const bool is_new = number < 0;

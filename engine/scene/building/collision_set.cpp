@@ -1,5 +1,8 @@
 #include "scene/building/collision_set.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "scene/definition/rotation.h"
 
 namespace supple {
@@ -11,6 +14,15 @@ template <class Kind>
 const Kind* lone(const SceneCollider& collider) {
   const std::vector<ShapePart>& parts = collider.def.shape.root.parts;
   return parts.size() == 1 && !parts.front().mirror_x ? std::get_if<Kind>(&parts.front().primitive) : nullptr;
+}
+
+// Returns the surface of a collider that deforms, which is all of its shape.
+ClosedSurface& surface_of_shape(Shape& shape) { return std::get<ClosedSurface>(shape.root.parts.front().primitive); }
+
+Positions in_frame_of_shape(const ShapePart& part, Positions points) {
+  const Eigen::Affine3d to_parent = Eigen::Affine3d(part.to_local.inverse()) * Eigen::Scaling(part.scale);
+  for (Eigen::Index v = 0; v < points.rows(); ++v) points.row(v) = (to_parent * Vec3(points.row(v))).transpose();
+  return points;
 }
 
 // Returns the plane of a half space in the collider's frame: its unit normal, and a point on it.
@@ -50,6 +62,18 @@ Skin square_of(const Vec3& normal, const Vec3& center, double half_edge) {
 
 Eigen::Isometry3d SceneCollider::pose(double time) const { return motion.at(time) * rest; }
 
+double SceneCollider::frame(double time) const {
+  const SurfaceMotionDef& by = *def.motion;
+  const double gone = std::max(0.0, time - by.start) * by.fps.value_or(scene_fps);
+  return std::min(by.first + gone, double(by.motion->frames() - 1));
+}
+
+Shape SceneCollider::shape_at(double time) const {
+  Shape shape = def.shape;
+  if (def.motion) surface_of_shape(shape) = {def.motion->motion->solid_at(frame(time))};
+  return shape;
+}
+
 CollisionSet collision_set(const SceneDef& scene) {
   CollisionSet set;
   for (const ColliderDef& def : scene.colliders) {
@@ -57,10 +81,35 @@ CollisionSet collision_set(const SceneDef& scene) {
     collider.def = def;
     collider.motion = {def.position, def.ease, def.keys};
     collider.rest.translate(def.position).rotate(rotation_from_degrees(def.turn_deg));
+    collider.scene_fps = scene.fps;
+    if (def.motion) {
+      collider.def.shape = collider.shape_at(0);
+      set.deformed.resize(scene.colliders.size());
+    }
+    set.colliders.push_back({def.name, collider.def.shape, def.thickness, def.friction});
     set.scene_colliders.push_back(std::move(collider));
-    set.colliders.push_back({def.name, def.shape, def.thickness, def.friction});
   }
   return set;
+}
+
+void deform_colliders(CollisionSet& set, double from, double to) {
+  for (std::size_t c = 0; c < set.deformed.size(); ++c) {
+    const SceneCollider& collider = set.scene_colliders[c];
+    if (!collider.def.motion) continue;
+    DeformedStep& step = set.deformed[c];
+    const double first = collider.frame(from), last = collider.frame(to);
+    if (step.end && step.from == first && step.to == last) continue;
+    const SolidMotion& motion = *collider.def.motion->motion;
+    DeformedStep next{first, last, step.end && step.to == first ? step.end : motion.solid_at(first), nullptr, nullptr};
+    next.end = first == last ? next.start : motion.solid_at(last);
+    // A contact lies in the layer around the collider, or little deeper than its surface.
+    constexpr double near = 0.05;  // over the surface's size
+    const double scale = collider.def.shape.root.parts.front().scale;
+    const double reach = near * next.end->bounds().diagonal() + 2 * collider.def.thickness / scale;
+    next.move = std::make_shared<SurfaceMove>(next.start, next.end, reach);
+    step = std::move(next);
+    surface_of_shape(set.colliders[c].shape) = {step.end};
+  }
 }
 
 namespace {
@@ -80,7 +129,8 @@ void collider_motions(const CollisionSet& set, const StepSpan& span, std::vector
       const Eigen::Isometry3d now = set.scene_colliders[c].pose(time);
       return set.earlier.empty() || change >= 1 ? now : between(set.earlier[c].pose(time), now, change);
     };
-    motions.push_back({pose(span.from, span.change_from), pose(span.to, span.change_to)});
+    motions.push_back({pose(span.from, span.change_from), pose(span.to, span.change_to),
+                       set.deformed.empty() ? nullptr : set.deformed[c].move});
   }
 }
 
@@ -104,12 +154,11 @@ Skin drawn_collider(const SceneCollider& collider, const Bounds& around) {
   const Shape& shape = collider.def.shape;
   std::vector<std::int32_t> vertex_of;
   if (const auto* surface = lone<ClosedSurface>(collider)) {
-    const ShapePart& part = shape.root.parts.front();
-    const Eigen::Affine3d to_parent = Eigen::Affine3d(part.to_local.inverse()) * Eigen::Scaling(part.scale);
     const TriMesh& drawn = surface->drawn ? *surface->drawn : surface->solid->surface();
-    Positions points = drawn.points;
-    for (Eigen::Index v = 0; v < points.rows(); ++v) points.row(v) = (to_parent * Vec3(points.row(v))).transpose();
-    return skin_of_surface(points, drawn.triangles, 0, vertex_of);
+    const Positions points = in_frame_of_shape(shape.root.parts.front(), drawn.points);
+    Skin skin = skin_of_surface(points, drawn.triangles, 0, vertex_of);
+    if (collider.def.motion) skin.vertex_of = std::move(vertex_of);
+    return skin;
   }
   constexpr double cells = 96;  // along the longest side
   const Skin skin = skin_of(shape, shape.bounds().extent().maxCoeff() / cells);
@@ -120,6 +169,13 @@ Skin drawn_collider(const SceneCollider& collider, const Bounds& around) {
     creased.paint[v] = skin.paint[vertex_of[v]];
   }
   return creased;
+}
+
+Positions drawn_places(const SceneCollider& collider, const Skin& skin, double time) {
+  if (skin.vertex_of.empty()) return skin.rest.points;
+  const Positions points = in_frame_of_shape(collider.def.shape.root.parts.front(),
+                                             collider.def.motion->motion->points_at(collider.frame(time)));
+  return points(skin.vertex_of, Eigen::all);
 }
 
 }  // namespace supple

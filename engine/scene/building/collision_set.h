@@ -9,12 +9,26 @@
 namespace supple {
 
 struct SceneCollider {
-  ColliderDef def;
+  ColliderDef def;  // of one that deforms, its shape is that of the film's start
   KeyedMotion motion;
   Eigen::Isometry3d rest = no_motion();  // from its frame to the world before any key
 
+  double scene_fps = 0;
+
   // Returns the map from the collider's frame to the world at a time [s].
   Eigen::Isometry3d pose(double time) const;
+  // Returns the frame of the motion that deforms the collider at a time [s], within that motion. Only where there is
+  // one.
+  double frame(double time) const;
+  // Returns the shape at a time [s].
+  Shape shape_at(double time) const;
+};
+
+// Holds how a collider that deforms does so in one step.
+struct DeformedStep {
+  double from = -1, to = -1;  // frames of its motion
+  std::shared_ptr<const TriangleSolid> start, end;
+  std::shared_ptr<const SurfaceMove> move;
 };
 
 // Holds all that bodies can collide with: the colliders of the scene, and no other bodies.
@@ -22,6 +36,7 @@ struct CollisionSet {
   std::vector<SceneCollider> scene_colliders;
   std::vector<SceneCollider> earlier;  // those before a change that is spread over this frame; else empty
   std::vector<Collider> colliders;     // the scene's colliders in the form that the solver needs
+  std::vector<DeformedStep> deformed;  // by collider; empty where none deforms
 };
 CollisionSet collision_set(const SceneDef& scene);
 
@@ -32,12 +47,19 @@ struct StepSpan {
   double change_from = 1, change_to = 1;
 };
 
-// Computes the motions of all colliders over one step.
+// Gives the colliders that deform the shapes that they have at the end of a step from one time to another [s]. What
+// they are follows from the two times alone.
+void deform_colliders(CollisionSet& set, double from, double to);
+
+// Computes the motions of all colliders over one step, for which deform_colliders() was called.
 void collider_motions(const CollisionSet& set, const StepSpan& span, std::vector<ColliderMotion>& motions);
 
 // Makes the skin of a collider, in its own frame. A half space becomes a square that reaches well beyond `around` (in
 // the world). The skin is empty for the ground that every film has.
 Skin drawn_collider(const SceneCollider& collider, const Bounds& around);
+
+// Returns the places of that skin's vertices at a time [s], in the collider's frame.
+Positions drawn_places(const SceneCollider& collider, const Skin& skin, double time);
 
 // Tells whether a collider is a half space and nothing else.
 bool is_half_space(const SceneCollider& collider);

@@ -154,6 +154,27 @@ void warn_of_fall(const SceneDef& scene, const Body& body, std::vector<Warning>&
 
 // Warns of bodies that start in the same place, whether they meet or pass through each other, or in themselves. Either
 // of them may say that it is meant.
+// Warns of colliders that deform so fast that a body may be hit before its elements can give way: where a part of the
+// surface goes further in a step than a tenth of the smallest body.
+void warn_of_fast_surfaces(const SceneDef& scene, const std::vector<Body>& bodies, std::vector<Warning>& list) {
+  constexpr double most = 0.1;
+  double size = HUGE_VAL;
+  for (const Body& body : bodies) size = std::min(size, bounds_of(body.description.mesh.rest).diagonal());
+  for (const ColliderDef& collider : scene.colliders) {
+    if (!collider.motion) continue;
+    const double frames = std::min(1.0, collider.motion->fps.value_or(scene.fps) * scene.time_step());
+    const double way = frames * collider.shape.root.parts.front().scale * collider.motion->motion->longest_way();
+    if (way <= most * size) continue;
+    list.push_back(
+        {std::nullopt,
+         {collider.place,
+          fmt::format("collider '{}': its motion takes the surface {:.2g} m further in one step of {:.3g} s, "
+                      "which is {:.0f} % of the smallest body; more 'substeps', or a lower 'fps' of the "
+                      "motion, keep contact exact",
+                      collider.name, way, scene.time_step(), 100 * way / size)}});
+  }
+}
+
 void warn_of_shared_space(const std::vector<Body>& bodies, std::vector<Warning>& list) {
   std::vector<Positions> points;
   for (const Body& body : bodies) points.push_back(first_positions(body));
@@ -295,6 +316,7 @@ std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bo
     for (std::size_t i = first; i < list.size(); ++i) list[i].meant = is_meant(body.def, *list[i].kind);
   }
   warn_of_shared_space(bodies, list);
+  warn_of_fast_surfaces(scene, bodies, list);
   return list;
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -264,6 +265,9 @@ class ConfigTable {
   // Returns an existing path, looked up in the folder of the file that names it or among the assets; empty when the key
   // is absent or wrong.
   std::filesystem::path file(const Key& key) const;
+  // The same, for paths that name more than one file. is_there: tells whether what a path names is there.
+  std::filesystem::path file_that(const Key& key,
+                                  const std::function<bool(const std::filesystem::path&)>& is_there) const;
 
   // Returns a value of any type, which the caller must check.
   std::optional<ConfigValue> value(const Key& key, const char* fallback = "required") const;

@@ -434,6 +434,15 @@ bool ConfigTable::is_text(const char* key) const {
 }
 
 std::filesystem::path ConfigTable::file(const Key& key) const {
+  const auto exists = [](const std::filesystem::path& path) {
+    std::error_code error;
+    return std::filesystem::exists(path, error);
+  };
+  return file_that(key, exists);
+}
+
+std::filesystem::path ConfigTable::file_that(const Key& key,
+                                             const std::function<bool(const std::filesystem::path&)>& is_there) const {
   const toml::node* node = find(key, "file", "none", "a path, beside the file that names it or among the assets");
   if (node == nullptr) return {};
   const auto value = node->value_exact<std::string>();
@@ -444,9 +453,8 @@ std::filesystem::path ConfigTable::file(const Key& key) const {
   const toml::source_region& source = config_->content_->source_of(*node);
   const std::filesystem::path beside = config_->content_->folder_of(source) / *value;
   const std::filesystem::path asset = config_->content_->assets / *value;
-  std::error_code error;
-  if (std::filesystem::exists(beside, error)) return beside;
-  if (std::filesystem::exists(asset, error)) return asset;
+  if (is_there(beside)) return beside;
+  if (is_there(asset)) return asset;
   const std::string places =
       beside == asset ? beside.string() : fmt::format("{} and {}", beside.string(), asset.string());
   const auto same_ending = [&beside](const std::filesystem::path& entry) {

@@ -14,10 +14,9 @@
 #include "base/error.h"
 #include "base/names.h"
 #include "base/picture_pass.h"
-#include "geometry/shapes/shape.h"
 #include "geometry/skins/skin.h"
-#include "geometry/solids/solid_surface.h"
 #include "scene/definition/start_state.h"
+#include "scene/definition/surface_motion.h"
 #include "scene/definition/warning_kinds.h"
 #include "sim/model/inputs.h"
 #include "sim/model/method.h"
@@ -227,7 +226,7 @@ struct BodyDef {
   }
 };
 
-// Describes a rigid obstacle. Its shape is given in its own frame.
+// Describes an obstacle. Its shape is given in its own frame.
 struct ColliderDef {
   std::string name;
   Shape shape;
@@ -237,6 +236,7 @@ struct ColliderDef {
   double thickness = 0;  // [m]
   Ease ease = Ease::smooth;
   std::vector<MotionKey> keys;
+  std::optional<SurfaceMotionDef> motion;  // nothing: it is rigid
   bool visible = true;
   std::optional<Vec3> color;  // [sRGB]
   FilePlace place;

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "geometry/shapes/shape.h"
+#include "geometry/shapes/solid_motion.h"
 #include "scene/config/config.h"
 
 namespace supple {
@@ -17,8 +18,14 @@ struct KnownSurfaces {
     ClosedSurface surface;
     std::vector<std::string> notes;
     SourceFile source;
+    SurfaceOptions options = {};
+  };
+  struct ReadMotion {
+    std::shared_ptr<const SolidMotion> motion;
+    SourceFile source;
   };
   std::map<std::string, Read> of_parts;                                 // by path and options
+  std::map<std::string, ReadMotion> of_motions;                         // by motion, body and surface
   std::map<std::string, std::shared_ptr<const BodySurface>> of_bodies;  // by path, options and rule for pieces
 };
 

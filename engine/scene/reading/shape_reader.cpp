@@ -39,6 +39,7 @@ ClosedSurface known_surface(Config& config, const std::filesystem::path& file, c
     KnownSurfaces::Read read;
     SolidSurface solid = read_solid_surface(file, options, &read.notes);
     read.source = source_of(file, solid);
+    read.options = options;
     read.surface.solid = std::make_shared<TriangleSolid>(std::move(solid.boundary));
     if (solid.drawn.triangles.rows() > 0) read.surface.drawn = std::make_shared<TriMesh>(std::move(solid.drawn));
     at = known->of_parts.emplace(name, std::move(read)).first;

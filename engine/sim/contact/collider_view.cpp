@@ -36,8 +36,9 @@ ColliderView::ColliderView(const Collider& collider, const ColliderMotion& motio
       to_start_(motion.start.inverse()),
       to_end_(motion.end.inverse()),
       traits_(traits),
+      surface_(motion.deforms() ? motion.surface.get() : nullptr),
       moves_(motion.moves()) {
-  if (!moves_) return;
+  if (!moves_ || surface_ != nullptr) return;  // the turns of its triangles bend no ways
   const Eigen::AngleAxisd turn(end_.linear() * start_.linear().transpose());
   bends_ = turn.angle() > least_bend;
   if (bends_) turn_ = turn.angle() * turn.axis();
@@ -75,6 +76,15 @@ Vec3 ColliderView::pace(const Way& way, double share) const {
 
 Eigen::Isometry3d ColliderView::motion_after(double share) const { return end_ * pose(share).inverse(); }
 
+Eigen::Isometry3d ColliderView::motion_near(const Vec3& place, double share) const {
+  if (surface_ == nullptr) return motion_after(share);
+  const Eigen::Isometry3d whole = end_ * shape_.motion_near(to_start_ * place, *surface_) * to_start_;
+  const Eigen::AngleAxisd turn(whole.linear());
+  Eigen::Isometry3d rest = Eigen::Isometry3d::Identity();
+  rest.translate(place + (1 - share) * (whole * place - place));
+  return rest.rotate(Eigen::AngleAxisd((1 - share) * turn.angle(), turn.axis())).translate(-place);
+}
+
 SurfacePoint ColliderView::on_layer(SurfacePoint s) const {
   s.point += collider_.thickness * s.normal;
   s.distance -= collider_.thickness;
@@ -110,7 +120,15 @@ std::optional<double> ColliderView::meets(const Way& way, double from, double to
 
 double ColliderView::most_moved(const Vec3& center, double radius) const {
   const double turn = Eigen::AngleAxisd(end_.linear() * start_.linear().transpose()).angle();
-  return (carried(center) - center).norm() + turn * radius;
+  if (surface_ == nullptr) return (carried(center) - center).norm() + turn * radius;
+  const double deformed = shape_.most_carried(*surface_);
+  return (end_ * (to_start_ * center) - center).norm() + turn * (radius + deformed) + deformed;
+}
+
+double ColliderView::least_distance(const Vec3& center, double radius, QueryMemory& near) const {
+  if (surface_ == nullptr) return distance(at_start(center), near) - uncertain(radius);
+  // Points of the ball may be carried apart, but none further than this.
+  return distance(to_end_ * center, near) - uncertain(radius + most_moved(center, radius));
 }
 
 std::optional<ColliderView::Entry> ColliderView::entry(const Way& way, double field_at_a, QueryMemory& near,

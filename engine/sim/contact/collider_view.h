@@ -1,6 +1,8 @@
 // Shows one collider over one step from its own frame of reference, where it stands still: the paths of points of the
 // world through that frame, and the surfaces that they meet. A collider that turns far in a step bends these ways into
-// arcs; between the two poses of a step it moves evenly. Not here: which vertices are looked at (find_contacts.h).
+// arcs; between the two poses of a step it moves evenly. One that deforms has the shape in which the step ends, and
+// what is near its surface at the start is carried along to there (geometry/solids/surface_move.h). Not here: which
+// vertices are looked at (find_contacts.h).
 #pragma once
 
 #include <optional>
@@ -30,11 +32,16 @@ class ColliderView {
 
   const Eigen::Isometry3d& start() const { return start_; }
   const Eigen::Isometry3d& end() const { return end_; }
-  Vec3 at_start(const Vec3& world) const { return to_start_ * world; }
+  Vec3 at_start(const Vec3& world) const {
+    const Vec3 own = to_start_ * world;
+    return surface_ == nullptr ? own : shape_.carried(own, *surface_);
+  }
   Vec3 at_end(const Vec3& world) const { return to_end_ * world; }
-  Vec3 carried(const Vec3& world) const { return end_ * (to_start_ * world); }  // moved with the collider
-  Way way(const Vec3& q, const Vec3& x) const {
-    Way way{q, x, to_start_ * q, to_end_ * x, 0};
+  Vec3 carried(const Vec3& world) const { return end_ * at_start(world); }  // moved with the collider
+  Way way(const Vec3& q, const Vec3& x) const { return way_from(at_start(q), q, x); }
+  // Returns the way of a point for which at_start(q) is known.
+  Way way_from(const Vec3& a, const Vec3& q, const Vec3& x) const {
+    Way way{q, x, a, to_end_ * x, 0};
     way.length = bends_ ? bent_length(q, x) : (way.b - way.a).norm();
     return way;
   }
@@ -47,9 +54,12 @@ class ColliderView {
   Vec3 at(const Way& way, double share) const;
   // Returns the velocity of a point on its way after a share of the step, in metres a step.
   Vec3 pace(const Way& way, double share) const;
-  // Returns the motion of the collider in the rest of the step.
+  // Returns the motion of the collider in the rest of the step, without what deforms it.
   Eigen::Isometry3d motion_after(double share) const;
+  // Returns the same, with the motion of the surface closest to a place of the world at the start of the step.
+  Eigen::Isometry3d motion_near(const Vec3& place, double share) const;
   bool moves() const { return moves_; }
+  bool deforms() const { return surface_ != nullptr; }
 
   // Returns the distance to the layer around the shape. `near` is the memory of a caller that asks about places near
   // each other.
@@ -73,6 +83,8 @@ class ColliderView {
   // Returns how far the collider's own points within a ball move in the step: they move with its centre and turn about
   // it.
   double most_moved(const Vec3& center, double radius) const;
+  // Returns a bound below the distances at the start of all points within a ball.
+  double least_distance(const Vec3& center, double radius, QueryMemory& near) const;
   // Returns by how much the distance may change within a length.
   double uncertain(double length) const { return length / traits_.certainty; }
   // Returns how far a point at this distance from the layer can certainly go without meeting it.
@@ -107,6 +119,7 @@ class ColliderView {
   ShapeProbe shape_;
   Eigen::Isometry3d start_, end_, to_start_, to_end_;
   ColliderTraits traits_;
+  const SurfaceMove* surface_ = nullptr;  // null: the collider does not deform in the step
   bool moves_ = false;
   bool bends_ = false;        // whether the collider turns so far that ways are arcs
   Vec3 turn_ = Vec3::Zero();  // the collider's turn in a step, about the world's axes, where it bends ways [rad]

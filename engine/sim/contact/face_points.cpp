@@ -256,7 +256,7 @@ void measure_groups(const Model& model, const ColliderView& view, const Position
     const double radius = 0.5 * box.diagonal();
     QueryMemory near;
     faces.collider_move[group] = view.most_moved(center, radius);
-    faces.distance[group] = view.distance(view.at_start(center), near) - view.uncertain(radius);
+    faces.distance[group] = view.least_distance(center, radius, near);
   }
 }
 

@@ -43,7 +43,7 @@ void leave(const ColliderView& view, const Way& way, const Vec3& way_out, double
   for (double at = field; at < 0 && left < push_out; at = view.distance(way.a + left * local, near))
     left += std::max(view.clear(-at), 0.02 * push_out);
   contact.normal = motion.linear() * way_out;
-  contact.offset = contact.normal.dot(view.carried(way.q)) + std::min(left, push_out);
+  contact.offset = contact.normal.dot(view.end() * way.a) + std::min(left, push_out);
   contact.depth = std::max(0.0, contact.offset - contact.normal.dot(way.x));
 }
 
@@ -146,6 +146,8 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
   work.drawn_offset = drawn_offsets(model, q, threads);
   if (work.drawn_offset.rows() > 0) work.start += work.drawn_offset.topRows(model.free);
   work.clearance.assign(colliders * model.free, unknown);
+  const bool any_deforms = std::ranges::any_of(inputs.collider_motions, &ColliderMotion::deforms);
+  work.carried.assign(any_deforms ? colliders * model.free : 0, Vec3::Constant(unknown));
   if (colliders > 0) remember_vertices(model, *inputs.colliders, work);
   work.group_distance.resize(colliders * groups);
   work.collider_move.resize(colliders * groups);
@@ -166,7 +168,7 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
       const ColliderMotion& motion = inputs.collider_motions[c];
       const ColliderView view((*inputs.colliders)[c], motion, work.traits[c]);
       work.collider_move[c * groups + group] = view.most_moved(center, radius);
-      work.group_distance[c * groups + group] = view.distance(view.at_start(center), near) - view.uncertain(radius);
+      work.group_distance[c * groups + group] = view.least_distance(center, radius, near);
     }
   }
   work.faces.resize(colliders);
@@ -263,7 +265,7 @@ class Planes {
     contact.depth = std::max(0.0, -gap(contact, x_));
     if (friction_ > 0) {
       contact.stick = inputs_.solver.contact.stick * size_at(corner) * model_.time_step;
-      contact.origin = view_.carried(way.q) - offset;
+      contact.origin = view_.end() * way.a - offset;
       const double depth_before = deep > 0 ? 0 : std::max(-field - slack, pressed_at_first(contact.number));
       contact.friction = friction_ * lagged_force(contact, depth_before, -gap(contact, prediction_),
                                                   model_.scheme.inertia * contact.stencil.mass(model_.mass) /

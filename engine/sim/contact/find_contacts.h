@@ -29,7 +29,10 @@ struct VertexMemories {
 // colliders.
 struct ContactWork {
   std::vector<std::vector<Contact>> by_chunk;
-  std::vector<double> clearance;         // signed distance at the start, colliders x free; NaN: not asked yet [m]
+  std::vector<double> clearance;  // signed distance at the start, colliders x free; NaN: not asked yet [m]
+  // Where vertices start as seen from colliders that deform, colliders x free; empty where none does. NaN: not asked
+  // yet.
+  std::vector<Vec3> carried;
   std::vector<VertexMemories> memories;  // by collider
   QueryMemory no_memory;                 // used for colliders of which nothing is remembered
   std::vector<double> group_distance;    // least distance of a group's vertices at the start, colliders x groups [m]
@@ -79,8 +82,12 @@ struct Impact {
 // below a surface that it enters on the way, or that comes to it. Returns impacts by part.
 std::vector<Impact> first_impacts(const Model& model, const StepInputs& inputs, const Positions& x, ContactWork& work);
 
-// Returns the motion of a collider in the rest of a step, after a share of it.
-Eigen::Isometry3d motion_after(const StepInputs& inputs, int collider, double share);
+// Returns the motion of a collider in the rest of a step, after a share of it. Of a collider that deforms it is the
+// motion of the surface that is closest to the middle of a part at the start of the step. q: n x 3 [m].
+Eigen::Isometry3d motion_after(const StepInputs& inputs, int collider, double share, const Part& part,
+                               const Positions& q);
+// Returns where a collider carries a place of the world to, over a whole step.
+Vec3 carried_by(const StepInputs& inputs, int collider, const Vec3& place);
 
 // Returns the collider that most points of a part touch; -1 when nothing touches.
 int most_touched(const Model& model, const Part& part, const std::vector<Contact>& contacts, std::size_t colliders);

@@ -62,8 +62,16 @@ std::vector<Impact> first_impacts(const Model& model, const StepInputs& inputs, 
   return first;
 }
 
-Eigen::Isometry3d motion_after(const StepInputs& inputs, int collider, double share) {
-  return ColliderView((*inputs.colliders)[collider], inputs.collider_motions[collider], {}).motion_after(share);
+Eigen::Isometry3d motion_after(const StepInputs& inputs, int collider, double share, const Part& part,
+                               const Positions& q) {
+  const ColliderView view((*inputs.colliders)[collider], inputs.collider_motions[collider], {});
+  if (!view.deforms()) return view.motion_after(share);
+  return view.motion_near(q.middleRows(part.first_free, part.free).colwise().mean().transpose(), share);
+}
+
+Vec3 carried_by(const StepInputs& inputs, int collider, const Vec3& place) {
+  const ColliderView view((*inputs.colliders)[collider], inputs.collider_motions[collider], {});
+  return view.deforms() ? view.carried(place) : view.motion_after(0) * place;
 }
 
 int most_touched(const Model& model, const Part& part, const std::vector<Contact>& contacts, std::size_t colliders) {

@@ -24,6 +24,14 @@ struct VertexSearch {
     return ColliderView((*inputs.colliders)[c], inputs.collider_motions[c], work.traits[c]);
   }
 
+  // Returns where a vertex starts as seen from a collider; for one that deforms, it is found once.
+  Vec3 place_at_start(const ColliderView& view, std::size_t c, int v) const {
+    if (!view.deforms()) return view.at_start(work.start.row(v));
+    Vec3& known = work.carried[c * model.free + v];
+    if (std::isnan(known.x())) known = view.at_start(work.start.row(v));
+    return known;
+  }
+
   // Returns the memory of queries for a vertex. Its first query starts from what the vertex before it in its group has
   // found.
   QueryMemory& memory(std::size_t c, int v) const {
@@ -65,7 +73,7 @@ struct VertexSearch {
     double least = above;
     for (int v = part.first_free; v < part.first_free + part.free; ++v) {
       if (work.group_distance[c * vertex_groups(model) + v / vertices_a_group] >= above) continue;
-      const Vec3 place = own.at_start(work.start.row(v));
+      const Vec3 place = place_at_start(own, c, v);
       if (own.certain_distance(place, memory(c, v)) >= above) continue;
       least = std::min(least, start_field(own, c, v, place));
     }
@@ -83,7 +91,7 @@ struct VertexSearch {
     const int end = std::min(model.free, (group + 1) * vertices_a_group);
     for (int v = group * vertices_a_group; v < end; ++v) {
       if (is_clear_from_afar(view, c, v, work.collider_move[at])) continue;
-      const Way way = view.way(work.start.row(v), work.place(x, v));
+      const Way way = view.way_from(place_at_start(view, c, v), work.start.row(v), work.place(x, v));
       const double reach = reach_of(way.length, view.length_to(work.place(*work.prediction, v), way));
       const bool asked = !std::isnan(work.clearance[c * model.free + v]);
       if (!asked && is_certainly_clear(view, way.a, way.length + reach, work.group_distance[at] > 0, memory(c, v)))

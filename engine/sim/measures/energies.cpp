@@ -48,7 +48,7 @@ double work_of_contacts(const StepInputs& inputs, const Positions& q, OpenWorksp
         work += w.scratch.row(stencil.vertex[k]).dot(x.row(stencil.vertex[k]) - q.row(stencil.vertex[k]));
       continue;
     }
-    const Vec3 from = stencil.at(q), carried = motion_after(inputs, contact.other.collider, 0) * from - from;
+    const Vec3 from = stencil.at(q), carried = carried_by(inputs, contact.other.collider, from) - from;
     const Vec3 slip = stencil.at(x) - from - carried;
     const double pressing = force.dot(contact.normal), away = slip.dot(contact.normal);
     work += force.dot(carried) + force.dot(slip) - pressing * away + pressing * std::max(0.0, away);

@@ -2,6 +2,7 @@
 // the solver, which may change from step to step.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "base/names.h"
 #include "geometry/meshes/pose.h"
 #include "geometry/shapes/shape.h"
+#include "geometry/solids/surface_move.h"
 #include "sim/linear/precision.h"
 #include "sim/model/air_inputs.h"
 #include "sim/model/budget_cuts.h"
@@ -18,20 +20,23 @@
 
 namespace supple {
 
-// Describes a rigid obstacle, in its own frame.
+// Describes an obstacle, in its own frame.
 struct Collider {
   std::string name;
-  Shape shape;
+  Shape shape;           // of one that deforms: where the step ends
   double thickness = 0;  // of the layer around the collider that already pushes [m]
   double friction = 0;   // coefficient of Coulomb's law
 };
 
-// Holds the poses of a collider, from its frame to the world, at the start and at the end of a step.
+// Holds the poses of a collider, from its frame to the world, at the start and at the end of a step, and how its
+// surface deforms between them.
 struct ColliderMotion {
   Eigen::Isometry3d start = no_motion();
   Eigen::Isometry3d end = no_motion();
+  std::shared_ptr<const SurfaceMove> surface = nullptr;  // null: the collider is rigid
 
-  bool moves() const { return start.matrix() != end.matrix(); }
+  bool deforms() const { return surface != nullptr && surface->moves(); }
+  bool moves() const { return deforms() || start.matrix() != end.matrix(); }
 };
 
 // Selects how search directions take contacts, which A does not contain, into account.

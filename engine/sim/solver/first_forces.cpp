@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/contact/collider_view.h"
 #include "sim/solver/first_iterate.h"
 #include "sim/solver/iterations.h"
 #include "sim/solver/lbfgs.h"
@@ -24,11 +25,11 @@ std::vector<char> touching_vertices(const Model& model, const StepInputs& inputs
   for (std::size_t c = 0; c < inputs.colliders->size(); ++c) {
     const Collider& collider = (*inputs.colliders)[c];
     if (collider.friction <= 0) continue;
-    const Eigen::Isometry3d to_local = inputs.collider_motions[c].start.inverse();
+    const ColliderView view(collider, inputs.collider_motions[c], {});
     for (int v = 0; v < model.free; ++v) {
       Vec3 place = x.row(v).transpose();
       if (drawn.rows() > 0) place += drawn.row(v).transpose();
-      const double distance = collider.shape.distance(to_local * place) - collider.thickness;
+      const double distance = collider.shape.distance(view.at_start(place)) - collider.thickness;
       if (std::abs(distance) > touching * model.part_of(v).size) continue;
       found.resize(inputs.colliders->size() * std::size_t(model.free), 0);
       found[c * std::size_t(model.free) + v] = 1;

@@ -30,7 +30,7 @@ void set_staying(const StepContext& c) {
     for (const Part& part : model.parts) {
       const int collider = most_touched(model, part, w.current.contacts, c.inputs.colliders->size());
       if (collider >= 0 && c.inputs.collider_motions[collider].moves())
-        move_rigidly(part, motion_after(c.inputs, collider, 0), x);
+        move_rigidly(part, motion_after(c.inputs, collider, 0, part, q), x);
     }
     return;
   }

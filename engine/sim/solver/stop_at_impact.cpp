@@ -28,7 +28,7 @@ void go_on_with_collider(const StepContext& c, const Part& part, const Impact& i
   find_contacts_of(model, inputs, w, w.current);
   evaluate(model, w, w.current, Wanted::value);
   w.trial.x.topRows(model.free) = w.current.x.topRows(model.free);
-  move_rigidly(part, motion_after(inputs, impact.collider, impact.share), w.trial.x);
+  move_rigidly(part, motion_after(inputs, impact.collider, impact.share, part, c.state.x), w.trial.x);
   find_contacts_of(model, inputs, w, w.trial);
   evaluate(model, w, w.trial, Wanted::value);
   if (w.trial.g < w.current.g) std::swap(w.current, w.trial);
