@@ -221,11 +221,15 @@ void CoarseSystem::find_turns(const Positions& x, const Positions& motion, std::
     const Mat3 products = gradient * gradient.transpose();
     const Mat3 inertia = products.trace() * Mat3::Identity() - products;
     const Mat3 rate = change * gradient.inverse();
-    const double share = group.volume / volume_[group.cluster];
     ClusterTurn& turn = turns[group.cluster];
-    turn.angle += share * inertia.ldlt().solve(torque);
-    turn.strain += share * 0.5 * (rate + rate.transpose());
+    turn.angle += group.volume * inertia.ldlt().solve(torque);
+    turn.strain += group.volume * 0.5 * (rate + rate.transpose());
     turn.stiffness += group.volume * group.stiffness;
+  }
+  for (std::size_t c = 0; c < turns.size(); ++c) {
+    if (volume_[c] <= 0) continue;
+    turns[c].angle /= volume_[c];
+    turns[c].strain /= volume_[c];
   }
   for (const SheetPatch& patch : patches_) turns[patch.cluster] = turn_of(patch, x, motion);
 }

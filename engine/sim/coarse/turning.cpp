@@ -28,7 +28,7 @@ void Turning::take_velocity(const CoarseSystem& system, const Positions& x, cons
     const Mat3 k = axis_of(turns_[c].angle), k2 = k * k;
     const double most = 1 - std::sqrt(1 - sine * sine);
     const Vec3& normal = turns_[c].normal;
-    const double directions = -k2.trace() + normal.dot(k2 * normal);  // across the axis, in which the strain is known
+    const double directions = 2 + normal.dot(k2 * normal);  // across the axis, in which the strain is known
     const double widened = std::clamp(-turns_[c].strain.cwiseProduct(k2).sum() / directions, 0.0, most);
     const double angle = std::atan2(sine, 1 + widened);
     by_cluster_[c] = (std::sin(angle) - turns_[c].angle.norm()) * k + (1 - std::cos(angle) + widened) * k2;
