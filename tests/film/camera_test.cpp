@@ -87,19 +87,21 @@ TEST(Camera, FramesPointsAsLargeAsThePictureAllows) {
   }
 }
 
-TEST(Camera, ShowsTheWholeMotionOfAStageThatKnowsItUnlessTheSceneSaysOtherwise) {
+TEST(Camera, ShowsTheWholeMotionOfAStageThatKnowsItWhereTheSceneAsksForItAndDoesNotPlaceIt) {
   Stage stage = stage_with_cube();
   const Stage still = stage;
   stage.motion = {Vec3(-0.5, 0, -0.5), Vec3(0.5, 3, 0.5), Vec3(4, 0, 0)};
+  const std::string automatic = "[camera]\nframes = \"auto\"\n";
   const auto eye = [](const std::string& keys, const Stage& on) {
     return camera_at(test::scene_of(cube + keys), on, 0).eye;
   };
-  const SceneDef open = test::scene_of(cube);
+  const SceneDef open = test::scene_of(cube + automatic);
   EXPECT_LE(farthest_of(camera_at(open, stage, 0), stage.motion, 16.0 / 9).maxCoeff(), 1);
   EXPECT_GT(farthest_of(camera_at(open, still, 0), stage.motion, 16.0 / 9).maxCoeff(), 1);
-  EXPECT_EQ(eye("[camera]\nframes = \"film\"\n", stage), eye("", stage));
-  for (const char* keys : {"[camera]\nframes = \"start\"\n", "[camera]\ndistance = 4\n",
-                           "[camera]\nposition = [0, 1, 3]\n", "[camera]\nkeys = [{ t = 1, azimuth = 3 }]\n"})
+  EXPECT_EQ(eye("[camera]\nframes = \"film\"\n", stage), eye(automatic, stage));
+  for (const std::string& keys :
+       {std::string(), std::string("[camera]\nframes = \"start\"\n"), automatic + "distance = 4\n",
+        automatic + "position = [0, 1, 3]\n", automatic + "keys = [{ t = 1, azimuth = 3 }]\n"})
     EXPECT_EQ(eye(keys, stage), eye(keys, still)) << keys;
 }
 

@@ -53,7 +53,8 @@ void check_names(const SceneDef& scene, const BodyDef& body, Complaints& complai
     if (name != body.name) {
       complaints.add(body, name, fmt::format("must be {}{}", allowed_names(others), did_you_mean(name, others)));
     } else if (!shares_list(scene, body)) {
-      complaints.add(body, name, fmt::format("whether a body meets itself is said by self; must be {}", allowed_names(others)));
+      complaints.add(body, name,
+                     fmt::format("whether a body meets itself is said by self; must be {}", allowed_names(others)));
     }
   }
 }
