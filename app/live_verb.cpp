@@ -79,7 +79,7 @@ int run(LiveCommand command, const std::vector<std::string>& words) {
   catch_interrupts();
   FilmStart start;
   start.repeated = repeated_cuts(film.world.script().session(), names_of(film.world.bodies()));
-  // What is done on the page decides where bodies go, so that only a camera that asks for it knows their motion.
+  // People on the page move the bodies. So the motion is found beforehand only where the camera asks for it.
   if (wants_motion(film.world.scene())) (void)find_framing(plan, start, all_solvers(), film);
   LiveDesk desk(plan.gl, shaders_folder());
   LiveServer server(desk, command.address, assets_folder() / "live");

@@ -75,7 +75,7 @@ TEST(CheckPictures, ShowTheWholeMotionWhereItIsAskedForAndNothingPlacesTheCamera
   for (const auto& row : test::profile_of(folder.path / "a")["frames"])
     for (const auto& body : row["bodies"]) EXPECT_EQ(body["in_picture"].get<double>(), 1);
 
-  // What stays in the picture of the start keeps that picture, and so does what the scene places itself.
+  // A film whose bodies stay in the picture of the start keeps that picture. So does one whose scene places the camera.
   const auto bytes = [&](const std::string& name, const std::string& camera, const std::string& velocity) {
     std::ofstream(folder.path / "s.toml") << boxes << camera;
     const test::Result made = run(folder.path, {"render", "s.toml", "--no-video", "--size", "96x54", "--out", name,

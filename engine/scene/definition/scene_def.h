@@ -281,7 +281,8 @@ struct CameraDef {
   std::vector<CameraKey> keys;  // in order of time
   double shutter_deg = 0;       // how much of a frame the shutter is open, of 360; 0: for an instant
   double aperture = 0;          // diameter of the lens; 0: all is sharp [m]
-  // What is sharp: a body or collider, or this distance along the direction of the view [m]; neither: the target.
+  // The body or collider of this name is sharp, or what is at this distance along the direction of the view [m];
+  // without both, the target is.
   std::string focus_on;
   std::optional<double> focus_distance;
 
