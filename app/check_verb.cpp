@@ -8,6 +8,7 @@
 #include "base/console.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "film/earlier_run.h"
 #include "film/pictures/picture_words.h"
 #include "film/plan/shipped_files.h"
 #include "film/plan/slow_work_line.h"
@@ -40,6 +41,7 @@ Checked read_all(const CheckCommand& command) {
   const SceneSource source = opened_scene(command.scene, command.json);
   Checked checked{Script::load(source, assets_folder(), command.settings), {}, {}, {}};
   const SceneDef& scene = checked.script.scene();
+  check_earlier_run(scene);
   if (scene.sweep_points > 0 && !checked.script.is_replay()) {
     check_sweep_points(source, assets_folder(), command.settings,
                        load_sweep(source, assets_folder(), command.settings));
@@ -55,7 +57,7 @@ Checked read_all(const CheckCommand& command) {
   plan.scene_text = source.text;
   plan.settings = command.settings;
   plan.cache = !command.no_cache;
-  checked.missing = missing_in_rough_pictures(plan, all_solvers());
+  if (!scene.from) checked.missing = missing_in_rough_pictures(plan, all_solvers());
   return checked;
 }
 

@@ -12,7 +12,6 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
-#include "base/frame_time.h"
 #include "base/interrupts.h"
 #include "base/read_file.h"
 #include "base/text.h"
@@ -64,7 +63,7 @@ void make_sheet(const DrawCommand& command, const LoadedDrawing& drawing) {
   std::vector<double> times;
   for (int picture = 0; picture < picture_count(drawing); ++picture) {
     const Moment moment = moment_of(drawing, picture);
-    times.push_back(frame_time(moment.frame, scene.fps) + moment.share / scene.fps);
+    times.push_back(scene.time_after(moment.frame) + moment.share / scene.fps);
   }
   const std::filesystem::path file = write_sheet(command.folder(), scene.title, times);
   if (!command.quiet) say(stdout, fmt::format("  sheet    {}\n", file.string()));

@@ -12,6 +12,7 @@
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "base/timing.h"
+#include "film/earlier_run.h"
 #include "film/pictures/picture_words.h"
 #include "film/plan/film_coding.h"
 #include "film/plan/shipped_files.h"
@@ -43,6 +44,11 @@ void say_remarks(const FilmPlan& plan, const LoadedFilm& film) {
     for (const std::string& note : collider.shape.notes)
       say(stderr, fmt::format("note: collider '{}': {}\n", collider.name, note));
   }
+}
+
+void go_on(const FilmPlan& plan, LoadedFilm& film) {
+  for (const std::string& note : go_on_from_run(plan, all_solvers().steps, film.world))
+    if (!plan.quiet) say(stderr, fmt::format("note: {}\n", note));
 }
 
 namespace {
@@ -192,6 +198,9 @@ void add_film_options(Verb& verb, FilmCommand& command) {
   verb.option("--out", plan.out, "folder for the results [out/NAME]");
   add_size_option(verb, plan.size, "the scene's");
   verb.option("--frames", plan.frames, "length of the film, over the scene's").between(1, 1000000);
+  const Option from = verb.option("--from", plan.from,
+                                  "folder of an earlier run: bodies of the same name go on from where they were there");
+  verb.option("--frame", plan.from_frame, "of that run, counted from 0 [its last]").needs(from).between(0, 1000000);
   verb.option("--threads", plan.threads, "threads of the solver [all cores]; results do not depend on it")
       .between(1, 256);
   verb.option("--set", plan.settings, "path=value over the scene's, such as solver.iterations=20; may be repeated")
@@ -326,6 +335,8 @@ int run_film(const FilmCommand& command, const std::vector<std::string>& words, 
   const Stopwatch setup;
   LoadedFilm film = load_film(plan, words);
   const SceneDef& scene = film.world.script().scene();
+  catch_interrupts();
+  go_on(plan, film);
   if (!plan.quiet) say_remarks(plan, film);
   build_models(plan, film);
   if (!plan.quiet) say_bodies(film.info);
@@ -335,7 +346,6 @@ int run_film(const FilmCommand& command, const std::vector<std::string>& words, 
     say(stderr, fmt::format("note: {}: {}\n", plan.verify, start.verifier->remark()));
   say_place(plan, start.place);
   say_coding(plan, scene);
-  catch_interrupts();
   const std::string framing = find_framing(plan, start, all_solvers(), film);
   if (!plan.quiet && !framing.empty()) say(stderr, framing);
   const RunFolder folder = open_folder(start, film);

@@ -15,9 +15,9 @@ namespace supple {
 struct FilmCommand {
   FilmPlan plan;
   std::vector<std::string> passes = {};  // names of passes, over the scene's
-  bool json = false;                // the result as one line of JSON
-  bool table = true;                // the table of times at the end
-  bool page = false;                // a page of the run (output/pages/run_page.h)
+  bool json = false;                     // the result as one line of JSON
+  bool table = true;                     // the table of times at the end
+  bool page = false;                     // a page of the run (output/pages/run_page.h)
 };
 
 // Adds the options that every run of a scene has. --resume is not among them, because it is for single films only.
@@ -36,6 +36,9 @@ void add_coding_options(Verb& verb, FilmCoding& coding);
 // Adds the option of the film's passes, and puts them before settings, which may differ.
 void add_passes_option(Verb& verb, std::vector<std::string>& passes);
 void ask_for_passes(const std::vector<std::string>& passes, std::vector<std::string>& settings);
+
+// Lets the film go on from an earlier run where its scene says so, and prints what was done for it.
+void go_on(const FilmPlan& plan, LoadedFilm& film);
 
 // Prints warnings of the scene, and the notes from reading meshes.
 void say_remarks(const FilmPlan& plan, const LoadedFilm& film);

@@ -74,9 +74,10 @@ int run(LiveCommand command, const std::vector<std::string>& words) {
   if (command.plan.threads == 0) command.plan.threads = usual_threads();
   const FilmPlan& plan = command.plan;
   LoadedFilm film = load(command, words);
+  catch_interrupts();
+  go_on(plan, film);
   if (!plan.quiet) say_remarks(plan, film);
   build_models(plan, film);
-  catch_interrupts();
   FilmStart start;
   start.repeated = repeated_cuts(film.world.script().session(), names_of(film.world.bodies()));
   // People on the page move the bodies. So the motion is found beforehand only where the camera asks for it.

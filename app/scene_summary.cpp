@@ -130,6 +130,9 @@ std::string scene_summary(const SceneSource& source, int thread_count) {
                       scene.frames, scene.fps, duration_text(scene.frames / scene.fps),
                       scene.substeps == 1 ? "one step" : fmt::format("{} steps", scene.substeps),
                       fmt::format("{:.3g}", scene.time_step()), scene.output.width, scene.output.height);
+  if (scene.from)
+    text += fmt::format("from            frame {} of {}; what follows tells of the scene's own start\n",
+                        scene.from->frame, scene.from->run.string());
   if (world.script().is_replay()) text += changes_text(world.script());
   for (const ColliderDef& collider : scene.colliders)
     text += fmt::format("collider        '{}', friction {:g}{}\n", collider.name, collider.friction,

@@ -9,7 +9,6 @@
 
 #include "app/bench/case_text.h"
 #include "app/bench/comparison.h"
-#include "base/frame_time.h"
 #include "base/interrupts.h"
 #include "film/record/body_recorder.h"
 #include "film/record/pair_recorder.h"
@@ -96,7 +95,7 @@ class MeetingRun {
 // Makes the steps of a frame and completes its row. Returns why a step failed; empty when none did.
 std::string MeetingRun::make_steps(int frame, FrameRow& row) {
   row.frame = frame;
-  row.time_s = frame_time(frame, world_.scene().fps);
+  row.time_s = world_.scene().time_after(frame);
   row.bodies.resize(world_.size());
   for (std::size_t b = 0; b < world_.size(); ++b) recorders_[b]->begin_frame(frame, false, row.bodies[b]);
   const StepWatch watch{[this](std::size_t body, int substep) { recorders_[body]->before_step(substep); },
@@ -177,7 +176,7 @@ MeetingOutcome MeetingRun::play() {
     outcome.finite = failed.empty() && is_finite();
     if (!outcome.finite) break;
     look_at_places(outcome, frame);
-    if (frame_time(frame, world_.scene().fps) >= meeting_.alone_from) energy.look();
+    if (world_.scene().time_after(frame) >= meeting_.alone_from) energy.look();
     outcome.trials += double(row.bodies.front().line_search) / world_.scene().frames;
     tally.add(row);
   }

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "base/frame_time.h"
 #include "base/timing.h"
 #include "film/film_guide.h"
 #include "film/frame_loop.h"
@@ -185,7 +184,7 @@ void make_stills(const FilmPlan& plan, const SceneDef& scene, const RunFolder& f
   const Zone zone("stills");
   std::vector<double> times;
   for (int picture = 0; picture < pictures_of(plan, result); ++picture)
-    times.push_back(frame_time(picture * plan.pictures_every(), scene.fps));
+    times.push_back(scene.time_after(picture * plan.pictures_every()));
   try {
     result.stills = write_stills(folder.path(), scene.title, times);
   } catch (const std::exception& error) {

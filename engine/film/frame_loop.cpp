@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/frame_time.h"
 #include "base/timing.h"
 #include "base/trace.h"
 #include "base/user_cache.h"
@@ -18,7 +17,7 @@ FilmEnd FrameLoop::run(FrameGuide& guide, std::string& message) {
     guide.begin();
     FrameRow row;
     row.frame = frame;
-    row.time_s = frame_time(frame, world_.scene().fps);
+    row.time_s = world_.scene().time_after(frame);
     enter(frame, row);
     message = step(frame, row);
     if (!message.empty()) return FilmEnd::failed;
@@ -134,7 +133,7 @@ void FrameLoop::end_repeats() {
 
 DrawList FrameLoop::present_list() {
   for (const auto& body : recorders_) body->note_motion();
-  return list_of(std::max(world_.frames() - 1, 0), world_.frames() / world_.scene().fps, nullptr);
+  return list_of(std::max(world_.frames() - 1, 0), world_.scene().time_after(world_.frames() - 1), nullptr);
 }
 
 bool FrameLoop::show_again() {

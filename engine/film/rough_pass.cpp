@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "base/frame_time.h"
 #include "base/interrupts.h"
 #include "base/motion_hull.h"
 #include "base/trace.h"
+#include "film/earlier_run.h"
 
 namespace supple {
 namespace {
@@ -51,11 +51,22 @@ FramePositions positions_at_start(const World& world) {
   return positions;
 }
 
+// Loads the scene with coarse meshes, or with its own where bodies go on from another run, which has these.
+LoadedFilm film_of_pass(const FilmPlan& plan, const FilmSolvers& solvers) {
+  FilmPlan rough = rough_plan(plan);
+  LoadedFilm film = load_film(rough, {});
+  if (!film.world.script().scene().from) return film;
+  rough.rough = false;
+  LoadedFilm whole = load_film(rough, {});
+  (void)go_on_from_run(rough, solvers.steps, whole.world);
+  return whole;
+}
+
 }  // namespace
 
 RoughPass rough_pass(const FilmPlan& plan, const FilmSolvers& solvers, const PassEffort& effort) {
   const Zone zone("first pass");
-  RoughPass pass{load_film(rough_plan(plan), {}), {}, 0, plan.cache ? UserCache::of_user() : UserCache()};
+  RoughPass pass{film_of_pass(plan, solvers), {}, 0, plan.cache ? UserCache::of_user() : UserCache()};
   const World& world = pass.film.world;
   const int wanted = frames_of_pass(pass.film, effort);
   if (wanted == 0) {
@@ -86,7 +97,7 @@ std::vector<FrameRow> rows_of(const RoughPass& pass, DrawnFilm& drawn) {
   Threads threads(1);
   std::vector<FrameRow> rows;
   for (int frame = 0; frame < static_cast<int>(pass.motion.size()); ++frame) {
-    FramePose pose{frame, frame_time(frame, world.scene().fps), {}, {}};
+    FramePose pose{frame, world.scene().time_after(frame), {}, {}};
     for (const Positions& body : pass.motion[std::size_t(frame)]) pose.motion.push_back(&body);
     const DrawList list = drawn.list(world.scene(), pose, world.colliders(), threads);
     FrameRow& row = rows.emplace_back();

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/frame_time.h"
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "output/files/json_text.h"
@@ -274,8 +273,7 @@ void LiveSession::move_to_pointer() {
   const SceneDef& scene = world_.scene();
   const double aspect = double(scene.output.width) / scene.output.height;
   const Vec3 there = point_in_plane(desk_.pictures.seen(), aspect, grabbed_->pointer, grabbed_->place);
-  const auto keys =
-      grabbed_->way.follow(frame_time(world_.frames(), scene.fps), 1 / scene.fps, there - grabbed_->place);
+  const auto keys = grabbed_->way.follow(scene.time_after(world_.frames()), 1 / scene.fps, there - grabbed_->place);
   if (!keys) return;
   try {
     change(fmt::format("body.{}.handles.{}.keys", grabbed_->body, grabbed_->name), keys_text(*keys), 0);
@@ -299,7 +297,7 @@ void LiveSession::release(const std::string& body, const std::string& name) {
   const auto is_this = [&](const LiveGrab& grab) { return grab.body == body && grab.name == name; };
   const std::vector<LiveGrab> all = holding();
   const auto grab = std::ranges::find_if(all, is_this);
-  if (grab != all.end() && grab->from >= world_.frames() / world_.scene().fps) {
+  if (grab != all.end() && grab->from >= world_.scene().time_after(world_.frames() - 1)) {
     if (!is_pending(*grab)) pending_.push_back({body, name});
     return;
   }

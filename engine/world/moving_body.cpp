@@ -1,11 +1,13 @@
 #include "world/moving_body.h"
 
+#include <cmath>
 #include <limits>
 
 #include "base/error.h"
 #include "base/trace.h"
 #include "scene/definition/air_of_body.h"
 #include "sim/measures/measures.h"
+#include "sim/solver/calming.h"
 #include "sim/solver/step.h"
 
 namespace supple {
@@ -100,17 +102,21 @@ void MovingBody::prepare_step(int frame, int substep) {
   span_ = {done * scene_.time_step(), (done + 1) * scene_.time_step(), substep * share, (substep + 1) * share};
   const StepSpan& span = span_;
   switch_handles(span.from);
-  handle_targets(model_, body_, state_.anchors, span.to, span.change_to, inputs_.targets);
+  targets_at(span.to, span.change_to, inputs_.targets);
   if (model_.scheme.theta < 1)
-    handle_targets(model_, body_, state_.anchors, 0.5 * (span.from + span.to),
-                   0.5 * (span.change_from + span.change_to), inputs_.middle_targets);
+    targets_at(0.5 * (span.from + span.to), 0.5 * (span.change_from + span.change_to), inputs_.middle_targets);
   collider_motions(set_, span, inputs_.collider_motions);
 }
 
 Positions MovingBody::targets_at_start() const {
   Positions targets;
-  handle_targets(model_, body_, state_.anchors, span_.from, span_.change_from, targets);
+  targets_at(span_.from, span_.change_from, targets);
   return targets;
+}
+
+void MovingBody::targets_at(double time, double change, Positions& targets) const {
+  handle_targets(model_, body_, state_.anchors, time, change, targets);
+  if (put_attached_) put_attached_(time, targets);
 }
 
 void MovingBody::repeat(const std::optional<BudgetCuts>& cuts) {
@@ -154,6 +160,13 @@ void MovingBody::take_step(const Positions& x, Positions v, double time, std::ve
   state_.v = std::move(v);
   state_.time = time;
   state_.memory = {};
+  calm_down();
+}
+
+// Lets the movement within the body die down at the rate that the scene asks for.
+void MovingBody::calm_down() {
+  const double rate = body_.def.solver.calming;
+  if (rate > 0) calm(model_, std::exp(-rate * model_.time_step), state_.x, state_.v);
 }
 
 void MovingBody::add_time(double ms) {
@@ -162,13 +175,19 @@ void MovingBody::add_time(double ms) {
   report.other_ms += ms;
 }
 
-const StepReport& MovingBody::step() {
-  is_in_island_ = false;
-  untangled_ = body_.def.solver.untangle && is_tangled(model_, state_.x);
-  if (!untangled_) return supple::step(model_, inputs_, state_, workspace_.open(), *rule_);
+const StepReport& MovingBody::step_untangled() {
   StepInputs inputs = inputs_;
   inputs.solver.matrix = StartMatrix::system;
   return supple::step(rigid_model(), inputs, state_, workspace_);
+}
+
+const StepReport& MovingBody::step() {
+  is_in_island_ = false;
+  untangled_ = body_.def.solver.untangle && is_tangled(model_, state_.x);
+  const StepReport& report =
+      untangled_ ? step_untangled() : supple::step(model_, inputs_, state_, workspace_.open(), *rule_);
+  if (!report.failed) calm_down();
+  return report;
 }
 
 }  // namespace supple

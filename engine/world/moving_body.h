@@ -3,6 +3,7 @@
 // recorded of a body (film/record/body_recorder.h).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -57,6 +58,9 @@ class MovingBody {
 
   // Takes over a changed scene and body definition, and recomputes what the change requires.
   void apply(const ChangeCost& cost);
+  // Lets a function put the targets of handles that go with something else, at a time [s] (attached_handles.h).
+  void attach(std::function<void(double time, Positions& targets)> put) { put_attached_ = std::move(put); }
+
   // Computes the inputs of a step, and lets handles grab and release when their time has come. A second call changes
   // nothing.
   void prepare_step(int frame, int substep);
@@ -75,6 +79,10 @@ class MovingBody {
   // Adds to the last step's time [ms].
   void add_time(double ms);
 
+  const StepReport& step_untangled();
+  void calm_down();
+  // Computes the targets at a time [s], when so much is done of a change that is spread over the frame.
+  void targets_at(double time, double change, Positions& targets) const;
   void switch_handles(double time);
   // Makes the description's handles hold as the state says. Returns false when they held so already.
   bool hold_as_state_says();
@@ -95,6 +103,7 @@ class MovingBody {
   StepInputs inputs_;
   StepSpan span_{};  // of the step that was prepared last
   std::unique_ptr<SearchRule> rule_;
+  std::function<void(double time, Positions& targets)> put_attached_;  // empty: no handle is attached
   Workspace workspace_;
   std::optional<ModelValues> values_;  // made when the model first changes
   std::optional<Model> rigid_;         // the as-rigid-as-possible model; made when it is first needed

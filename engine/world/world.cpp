@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "base/trace.h"
 #include "sim/solver/step.h"
+#include "world/attached_handles.h"
 
 namespace supple {
 
@@ -16,14 +17,15 @@ struct World::Parts {
   SceneDef scene;  // the scene at the end of the frame that was entered last
   std::vector<Body> bodies;
   CollisionSet colliders;
-  std::vector<Model> models;                        // by body, once they are built
-  std::vector<std::unique_ptr<MovingBody>> moving;  // by body, once the world is started
-  std::unique_ptr<Islands> islands;                 // once the world is started
-  int frame = -1;                                   // that was entered last
-  int substep = 0;                                  // of that frame: the next one to be made
-  bool has_failed = false;                          // a step of that frame
-  bool has_stepped = false;                         // since the start, or the last state that was restored
-  double saved_ms = 0;                              // of the frame's steps
+  std::vector<Model> models;                               // by body, once they are built
+  std::vector<std::unique_ptr<MovingBody>> moving;         // by body, once the world is started
+  std::vector<std::unique_ptr<AttachedHandles>> attached;  // of bodies that have such handles
+  std::unique_ptr<Islands> islands;                        // once the world is started
+  int frame = -1;                                          // that was entered last
+  int substep = 0;                                         // of that frame: the next one to be made
+  bool has_failed = false;                                 // a step of that frame
+  bool has_stepped = false;                                // since the start, or the last state that was restored
+  double saved_ms = 0;                                     // of the frame's steps
 
   Parts(std::optional<Script> script, SceneDef at_start, std::vector<Body> bodies)
       : script(std::move(script)),
@@ -44,7 +46,7 @@ struct World::Parts {
     has_failed = false;
   }
   // Returns when the next frame begins [s].
-  double next_time() const { return (frame + 1) / scene.fps; }
+  double next_time() const { return scene.time_after(frame); }
   void take_edits(LiveEdits edits);
   // Changes the scene before its first frame.
   void begin_with(SceneDef scene, const std::vector<TimedChange>& changes) {
@@ -52,6 +54,7 @@ struct World::Parts {
     apply(std::move(scene), changes);
     end_last_changes();
   }
+  void attach_handles();
   // Makes the step of an island that was prepared. Returns whether it succeeded.
   // is_known: whether the watch has been told that it was prepared.
   bool step(const std::vector<std::size_t>& island, int substep, const StepWatch& watch, bool is_known);
@@ -69,6 +72,16 @@ void World::Parts::apply(SceneDef changed, const std::vector<TimedChange>& chang
   CollisionSet now = collision_set(scene);
   now.earlier = std::move(colliders.scene_colliders);
   colliders = std::move(now);
+}
+
+void World::Parts::attach_handles() {
+  attached.clear();
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    auto handles = std::make_unique<AttachedHandles>(moving, b, colliders);
+    if (handles->empty()) continue;
+    moving[b]->attach([put = handles.get()](double time, Positions& targets) { put->put(time, targets); });
+    attached.push_back(std::move(handles));
+  }
 }
 
 World::World(Script script, std::vector<Body> bodies) {
@@ -91,6 +104,8 @@ std::size_t World::size() const { return parts_->bodies.size(); }
 MovingBody& World::body(std::size_t index) { return *parts_->moving.at(index); }
 const MovingBody& World::body(std::size_t index) const { return *parts_->moving.at(index); }
 
+void World::begin_from(std::size_t body, EarlierState state) { parts_->bodies.at(body).from = std::move(state); }
+
 void World::build_models() {
   if (!parts_->models.empty()) return;
   parts_->models.reserve(size());
@@ -109,6 +124,7 @@ void World::start(const Solvers& solvers, Threads* threads) {
     if (was_played && parts.script)
       parts.moving[b]->apply(cost_for(parts.bodies[b].def.table, parts.script->changes()));
   }
+  parts.attach_handles();
   parts.islands = std::make_unique<Islands>(parts.scene, parts.moving, solvers, threads);
 }
 
@@ -250,12 +266,13 @@ void World::Parts::take_edits(LiveEdits edits) {
 
 void World::prepare(int substep) {
   const SceneDef& scene = parts_->scene;
-  const double done = static_cast<double>(parts_->frame) * scene.substeps + substep;
+  const int frame = scene.frames_before() + parts_->frame;
+  const double done = static_cast<double>(frame) * scene.substeps + substep;
   if (!parts_->colliders.deformed.empty()) {
     const Zone zone("deform colliders");
     deform_colliders(parts_->colliders, done * scene.time_step(), (done + 1) * scene.time_step());
   }
-  for (const auto& body : parts_->moving) body->prepare_step(parts_->frame, substep);
+  for (const auto& body : parts_->moving) body->prepare_step(frame, substep);
 }
 
 bool World::Parts::step(const std::vector<std::size_t>& island, int substep, const StepWatch& watch, bool is_known) {

@@ -48,6 +48,9 @@ class World {
   const std::vector<Body>& bodies() const;
   const CollisionSet& colliders() const;
 
+  // Lets a body start where it was in an earlier run. To be called before start().
+  void begin_from(std::size_t body, EarlierState state);
+
   // Builds the models of all bodies, unless they are there. Throws RunError and InputError as build_model does. A world
   // whose positions come from a file needs no models and is not started.
   void build_models();

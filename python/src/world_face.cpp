@@ -9,6 +9,7 @@
 #include "base/hash.h"
 #include "base/read_file.h"
 #include "base/text.h"
+#include "film/earlier_run.h"
 #include "film/plan/shipped_files.h"
 #include "film/record/body_recorder.h"
 #include "output/files/whole_file.h"
@@ -54,6 +55,10 @@ WorldFace::WorldFace(const py::object& source, const py::dict& set, int threads)
     held_ = std::make_unique<Held>(threads > 0 ? threads : all, std::move(script), std::move(bodies));
     const std::string json = held_->world.script().scene_json() + held_->world.script().replay_json();
     scene_ = hash_bytes(json.data(), json.size());
+    FilmPlan plan;
+    plan.threads = threads;
+    for (std::string& note : go_on_from_run(plan, held_->solvers.steps, held_->world))
+      warnings_.push_back(std::move(note));
     held_->world.start(held_->solvers.steps, &held_->threads);
   }
   held_->errors.emplace(held_->world, held_->solvers, held_->threads);
@@ -250,7 +255,7 @@ void WorldFace::move(const std::string& body, const std::string& handle, const p
   bool first = false;
   {
     const Lock held = whole();
-    const double now = held->world.frames() / held->world.scene().fps;
+    const double now = held->world.scene().time_after(held->world.frames() - 1);
     const std::vector<LiveGrab>& grabs = held->world.script().edits().grabs;
     const bool holds = std::ranges::any_of(
         grabs, [&](const LiveGrab& grab) { return grab.body == body && grab.name == handle && grab.until > now; });

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "base/frame_time.h"
+#include "scene/definition/scene_def.h"
 #include "support/bodies.h"
 
 namespace supple {
@@ -95,10 +95,13 @@ TEST(RunPage, TellsTheTimesThatCaptionsTell) {
   const std::string page = run_page(small_run(folder.path, 6));
   const nlohmann::json times = data_of(page)["times"];
   ASSERT_EQ(times.size(), 6u);
-  for (int frame = 0; frame < 6; ++frame) EXPECT_EQ(times[std::size_t(frame)], frame_time(frame, 25)) << frame;
+  SceneDef scene;
+  scene.fps = 25;
+  for (int frame = 0; frame < 6; ++frame) EXPECT_EQ(times[std::size_t(frame)], scene.time_after(frame)) << frame;
   EXPECT_NE(page.find("data.times[shown].toFixed(2)"), std::string::npos);
   EXPECT_NE(page.find("<div class=\"times\"><span>0.04 s</span><span>0.24 s</span></div>"), std::string::npos);
-  EXPECT_NEAR(frame_time(200, 30), 6.7, 1e-12);  // after its steps, and not 6.67
+  scene.fps = 30;
+  EXPECT_NEAR(scene.time_after(200), 6.7, 1e-12);  // after its steps, and not 6.67
 }
 
 TEST(RunPage, NeedsNoOtherFileAndTakesNoNameForMarkup) {

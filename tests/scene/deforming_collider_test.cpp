@@ -245,6 +245,23 @@ TEST_F(DeformingColliders, CapsAndThickSheetsFollowTheirVertices) {
   }
 }
 
+TEST_F(DeformingColliders, AHandleThatIsAttachedGoesWithTheSurface) {
+  // The plate is sheared and rises: a place of its surface moves by 0.4 z along x and by 0.2 upwards in a second.
+  write("sheared", plate(),
+        [](const Vec3& place, double time) { return Vec3(place + Vec3(0.4 * place.z() * time, 0.2 * time, 0)); });
+  const std::string handle =
+      "[[body.handles]]\nname = \"foot\"\nselect = { box = [[0, 0, 0], [1, 0.01, 1]] }\n"
+      "attach = { collider = \"plate\" }\n";
+  Film film(cube_at({0, 0, 0.25}, handle) + moved("sheared"));
+  film.play(0, 30);
+  const Model& model = film.world.body(0).model();
+  ASSERT_EQ(model.handled.size(), 16u);
+  for (const Model::HandleVertex& held : model.handled) {
+    const Vec3 rest = model.rest.row(held.vertex), now = film.world.body(0).state().x.row(held.vertex);
+    EXPECT_LT((now - rest - Vec3(0.4 * rest.z(), 0.2, 0)).norm(), 1e-6) << held.vertex;
+  }
+}
+
 TEST_F(DeformingColliders, WhatCannotMoveIsRefused) {
   write("plate", plate(), [](const Vec3& p, double) { return p; });
   write("ball", test::sphere_surface(0.4, 8, 4), [](const Vec3& p, double) { return p; });

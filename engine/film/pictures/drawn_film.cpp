@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/frame_time.h"
 #include "film/pictures/camera.h"
 #include "film/pictures/drawn_cloth.h"
 #include "film/pictures/film_graphs.h"
@@ -45,7 +44,7 @@ std::vector<Camera> cameras_of(const Script& script, const Stage& stage) {
   for (int frame = 0; frame < script.scene().frames; ++frame) {
     const bool changes = changes_camera(script, frame);
     if (changes) scene = script.scene_at(frame);
-    if (changes || scene.camera.moves()) cameras.push_back(camera_at(scene, stage, frame_time(frame, scene.fps)));
+    if (changes || scene.camera.moves()) cameras.push_back(camera_at(scene, stage, scene.time_after(frame)));
   }
   return cameras;
 }

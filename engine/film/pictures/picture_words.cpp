@@ -46,7 +46,7 @@ std::string headline_text(const SceneDef& scene, double time) {
 
 std::string longest_headline(const SceneDef& scene) {
   // Digits are about equally wide, and the last time has the most of them.
-  return headline_text(scene, scene.frames / scene.fps);
+  return headline_text(scene, scene.time_after(scene.frames - 1));
 }
 
 std::string note_text(const TextDef& text, const BodyDef& body, const BodyRow* row) {

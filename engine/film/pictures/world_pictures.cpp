@@ -100,7 +100,7 @@ WorldPictures::Pose WorldPictures::present_pose() {
     }
   }
   pose.frame.frame = std::max(frames - 1, 0);
-  pose.frame.time = frames / world_.scene().fps;
+  pose.frame.time = world_.scene().time_after(frames - 1);
   const auto point_to = [](const std::vector<Positions>& from, std::vector<const Positions*>& to) {
     for (const Positions& one : from) to.push_back(&one);
   };

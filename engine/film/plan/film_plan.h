@@ -28,6 +28,8 @@ struct FilmPlan {
   std::optional<std::size_t> sweep_point;  // point of the scene's sweep; nothing: the scene as it stands
   std::vector<std::string> settings;       // path=value, in place of the scene's values
   std::string size;                        // of the pictures, as output.size has it; empty: the scene's
+  std::string from;                        // folder of a run from which the film goes on; empty: the scene says
+  int from_frame = -1;                     // of that run; negative: its last one
   int frames = 0;                          // length of the film; 0: the scene's
   long long seed = -1;                     // of random start states; negative: the scene's
 

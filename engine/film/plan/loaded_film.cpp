@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <future>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "base/error.h"
@@ -13,6 +14,9 @@
 #include "film/plan/preview.h"
 #include "film/plan/shipped_files.h"
 #include "film/plan/slow_work_line.h"
+#include "output/files/json_text.h"
+#include "output/run/run_record.h"
+#include "scene/config/config.h"
 #include "scene/reading/picture_size.h"
 #include "scene/replay/script_trial.h"
 
@@ -134,8 +138,26 @@ std::string size_setting(const std::string& size, const std::vector<std::string>
   return "output.size=" + size;
 }
 
+namespace {
+
+// Returns the setting for --from.
+std::string from_setting(const FilmPlan& plan) {
+  const RunRecord run = read_run(plan.from);
+  int frame = plan.from_frame;
+  if (frame < 0) {
+    frame = parsed_json<nlohmann::json>(run.info_json).value("frames", 0) - 1;
+    if (frame < 0)
+      throw InputError("--from " + plan.from, "the run has not ended, so that --frame has to say from which frame");
+  }
+  const std::string folder = std::filesystem::absolute(plan.from).lexically_normal().string();
+  return fmt::format("from={{run = {}, frame = {}}}", toml_text(folder), frame);
+}
+
+}  // namespace
+
 LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& command) {
   std::vector<std::string> settings = plan.settings;
+  if (!plan.from.empty()) settings.push_back(from_setting(plan));
   if (!plan.size.empty()) settings.push_back(size_setting(plan.size, plan.settings));
   if (plan.frames > 0) settings.push_back(fmt::format("frames={}", plan.frames));
   if (plan.seed >= 0) settings.push_back(fmt::format("seed={}", plan.seed));

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/frame_time.h"
 #include "base/trace.h"
 #include "film/record/state_file.h"
 #include "output/files/obj_file.h"
@@ -42,13 +41,6 @@ void add_up(ContactRow& row, const StepReport& report) {
   row.contacts = report.contacts.touching;
   row.changes += report.contacts.changes;
   row.cycles += report.contacts.cycles;
-}
-
-// Returns nothing for a step that had no budget in the earlier run.
-std::optional<BudgetCuts> cuts_at(const CutsByFrame& cuts, int frame, int substep) {
-  const std::vector<BudgetCuts>& of_frame = cuts.at(std::size_t(frame));
-  if (substep >= std::ssize(of_frame)) return std::nullopt;
-  return of_frame[std::size_t(substep)];
 }
 
 }  // namespace
@@ -170,7 +162,7 @@ void BodyRecorder::end_frame() {
     row_->energy = {energy.kinetic, energy.elastic, energy.gravitational, energy.springs, energy.contact};
   }
   if (!body().motions.empty() && !body().def.handles.front().grabs) {
-    const double time = frame_time(frame_, world_.scene().fps);
+    const double time = world_.scene().time_after(frame_);
     row_->jiggle = jiggle(model(), state().x, body().motions.front().at(time));
   }
 }

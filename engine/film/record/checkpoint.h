@@ -16,4 +16,7 @@ std::string checkpoint_bytes(const WorldState& checkpoint, const std::string& id
 // identity, whose differences the message then lists.
 WorldState read_checkpoint(const std::filesystem::path& path, const std::string& identity);
 
+// Does the same for those who make no film of it: what files the film leaves, and how they are drawn, may differ.
+WorldState read_motion_checkpoint(const std::filesystem::path& path, const std::string& identity);
+
 }  // namespace supple

@@ -4,7 +4,6 @@
 
 #include "base/error.h"
 #include "base/floats.h"
-#include "base/frame_time.h"
 #include "sim/measures/fields.h"
 
 namespace supple {
@@ -20,7 +19,7 @@ VtuArray array_of(const char* name, int components, const std::vector<T>& values
 }  // namespace
 
 FieldWriter::FieldWriter(const Body& body, const Model& model, const RunFolder& folder, const SceneDef& scene)
-    : body_(body), model_(model), folder_(folder), fps_(scene.fps), may_touch_(scene.may_touch()) {
+    : body_(body), model_(model), folder_(folder), scene_(scene) {
   std::error_code error;
   std::filesystem::create_directories(folder.fields(), error);
   if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.fields().string(), error.message()));
@@ -37,7 +36,7 @@ void FieldWriter::find_earlier(int frame) {
 void FieldWriter::write_collection() const {
   std::vector<PvdEntry> entries;
   for (const int frame : written_)
-    entries.push_back({frame_time(frame, fps_), folder_.fields(body_.def.name, frame).filename().string()});
+    entries.push_back({scene_.time_after(frame), folder_.fields(body_.def.name, frame).filename().string()});
   write_pvd(folder_.field_collection(body_.def.name), entries);
 }
 
@@ -51,7 +50,7 @@ void FieldWriter::add(int frame, const State& state, const OpenWorkspace& worksp
   grid.points = {x.data(), std::size_t(x.size())};
   grid.point_data = {array_of("displacement", 3, displacement), array_of("velocity", 3, velocity)};
   Floats force, stretch, von_mises;
-  if (may_touch_) {
+  if (scene_.may_touch()) {
     force = as_floats(contact_forces(model_, workspace, state.x));
     grid.point_data.push_back(array_of("contact_force", 3, force));
   }

@@ -26,8 +26,7 @@ class FieldWriter {
   const Body& body_;
   const Model& model_;
   const RunFolder& folder_;
-  double fps_;
-  bool may_touch_;
+  const SceneDef& scene_;
   std::vector<int> written_;  // frames
 };
 

@@ -60,4 +60,10 @@ std::vector<CutsByFrame> repeated_cuts(const PlayedSession& session, const std::
   return result;
 }
 
+std::optional<BudgetCuts> cuts_at(const CutsByFrame& cuts, int frame, int substep) {
+  const std::vector<BudgetCuts>& of_frame = cuts.at(std::size_t(frame));
+  if (substep >= std::ssize(of_frame)) return std::nullopt;
+  return of_frame[std::size_t(substep)];
+}
+
 }  // namespace supple

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,9 @@ namespace supple {
 
 // Holds the cuts of one body by frame and substep.
 using CutsByFrame = std::vector<std::vector<BudgetCuts>>;
+
+// Returns the cuts of a step; nothing where it had no budget in the earlier run.
+std::optional<BudgetCuts> cuts_at(const CutsByFrame& cuts, int frame, int substep);
 
 // Reads a run's profile. bodies: the names of the film's bodies; frames: its length. Returns the cuts by body. Throws
 // InputError where the run has fewer frames, lacks a body, or had no budget.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +12,7 @@
 #include "film/pictures/drawn_film.h"
 #include "film/pictures/reference_run.h"
 #include "film/plan/film_coding.h"
+#include "film/plan/run_plan.h"
 #include "film/plan/shipped_files.h"
 #include "film/record/film_identity.h"
 #include "film/redraw/run_lists.h"
@@ -29,112 +29,6 @@ namespace supple {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// Lists the values of a scene that change what is seen and nothing else, by the names that generic_path() gives them. A
-// name also covers all values below it.
-constexpr std::array seen = {"title",
-                             "camera",
-                             "look",
-                             "field",
-                             "text",
-                             "output.size",
-                             "output.width",
-                             "output.height",
-                             "output.samples",
-                             "output.blur_samples",
-                             "output.passes",
-                             "body[].color",
-                             "body[].back_color",
-                             "body[].yarn",
-                             "body[].gloss",
-                             "body[].label",
-                             "body[].meant",
-                             "body[].pattern",
-                             "body[].pattern_size",
-                             "body[].skin_cells",
-                             "collider[].color",
-                             "collider[].visible"};
-
-bool is_seen(const std::string& path) {
-  const std::string generic = generic_path(path);
-  return std::ranges::any_of(seen, [&generic](const std::string& one) {
-    return generic == one || (generic.starts_with(one) && generic[one.size()] == '.');
-  });
-}
-
-std::string member_text(const Json& object, const char* key) {
-  return object.contains(key) ? json_text(object[key]) : std::string();
-}
-
-// Returns the plan of the run's film, with the drawing's settings after those of the run.
-FilmPlan plan_of_run(const DrawPlan& plan, const Json& info) {
-  const std::string source = (plan.run / "run.json").string();
-  const bool whole = info.contains("scene_file") && info["scene_file"].is_string() && info.contains("settings") &&
-                     info["settings"].is_array() && info.contains("scene");
-  if (!whole) throw InputError(source, "does not tell the run's scene and settings: an older program made the run");
-  FilmPlan film;
-  film.cache = plan.cache;
-  film.quiet = plan.quiet;
-  film.scene = plan.scene.empty() ? info["scene_file"].get<std::string>() : plan.scene.string();
-  std::error_code error;
-  if (plan.scene.empty() && info.contains("scene_text") && info["scene_text"].is_string()) {
-    film.scene_text = info["scene_text"].get<std::string>();
-  } else if (!std::filesystem::is_regular_file(film.scene, error)) {
-    throw InputError(film.scene, "the run's scene is no longer there; --scene FILE says where it is now");
-  }
-  for (const Json& setting : info["settings"]) film.settings.push_back(setting.get<std::string>());
-  // Width and height that are asked for now stand over the size by name that the run was given.
-  const bool sized = std::ranges::any_of(plan.settings, [](const std::string& setting) {
-    return setting.starts_with("output.width=") || setting.starts_with("output.height=");
-  });
-  if (sized) std::erase_if(film.settings, [](const std::string& one) { return one.starts_with("output.size="); });
-  film.settings.insert(film.settings.end(), plan.settings.begin(), plan.settings.end());
-  if (info.contains("sweep_point")) film.sweep_point = info["sweep_point"].get<std::size_t>();
-  return film;
-}
-
-// Keeps only those changes of a replay that change what is simulated.
-std::string simulated_part(const std::string& replay) {
-  Json json = json_if_valid<Json>(replay);
-  if (!json.is_object()) return replay;
-  json.erase("title");
-  if (!json.contains("change") || !json["change"].is_array()) return json_text(json);
-  Json kept = Json::array();
-  for (const Json& change : json["change"]) {
-    const bool drawn = change.is_object() && change.contains("path") && change["path"].is_string() &&
-                       is_seen(change["path"].get<std::string>());
-    if (!drawn) kept.push_back(change);
-  }
-  json["change"] = kept;
-  return json_text(json);
-}
-
-// Refuses a scene that would have moved in another way than the run did.
-void check_same_motion(const DrawPlan& plan, const Json& info, const LoadedFilm& film) {
-  std::vector<Problem> problems;
-  for (const JsonDifference& difference : differing_values(json_text(info["scene"]), film.info.scene_json)) {
-    if (is_seen(difference.path)) continue;
-    // One of the two may have no table [output]; of its keys, only `energy` does not concern what is seen.
-    const bool seen_output =
-        difference.path == "output" && (difference.a + difference.b).find("energy") == std::string::npos;
-    if (seen_output) continue;
-    problems.push_back({film.info.scene_file, 0, 0,
-                        fmt::format("{} is {} here and was {} in the run: only what is seen may differ (camera, look, "
-                                    "output's width, height, samples, blur_samples and passes, colours, labels, "
-                                    "patterns, colliders being visible)",
-                                    difference.path, difference.b, difference.a)});
-  }
-  if (simulated_part(member_text(info, "replay")) != simulated_part(film.info.replay_json))
-    problems.push_back({film.info.scene_file, 0, 0, "the replay changes other values than it did in the run"});
-  Json meshes = Json::array();
-  for (const RunInfo::Mesh& mesh : film.info.meshes) meshes.push_back({mesh.body, mesh.hash});
-  Json then = Json::array();
-  for (const Json& mesh : info.value("meshes", Json::array())) then.push_back({mesh["body"], mesh["xxh64"]});
-  if (problems.empty() && meshes != then)
-    problems.push_back(
-        {plan.run.string(), 0, 0, "the run had other meshes: their files, or the program, have changed"});
-  if (!problems.empty()) throw InputError(std::move(problems));
-}
 
 std::vector<PointCacheReader> motion_of(const RunRecord& run, const LoadedFilm& film) {
   std::vector<PointCacheReader> motion;
@@ -204,10 +98,11 @@ void check_smooth(const DrawPlan& plan, const SceneDef& scene) {
 
 LoadedDrawing load_drawing(const DrawPlan& plan) {
   const RunRecord run = read_run(plan.run);
-  const Json info = parsed_json<Json>(run.info_json);
-  const FilmPlan film = plan_of_run(plan, info);
+  FilmPlan film = plan_of_run(run, plan.scene, plan.settings);
+  film.cache = plan.cache;
+  film.quiet = plan.quiet;
   LoadedDrawing drawing{load_film(film, {}), {}, {}, {}, 0, {}, plan.smooth, 0, {}};
-  check_same_motion(plan, info, drawing.film);
+  check_same_motion(run, drawing.film);
   check_passes(drawing.film.world.script().scene());
   check_smooth(plan, drawing.film.world.script().scene());
   drawing.film.info.framed = framed_in(run.info_json);

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "base/frame_time.h"
 #include "base/interrupts.h"
 #include "base/motion_hull.h"
 #include "film/plan/shipped_files.h"
@@ -58,6 +57,10 @@ void RunLists::rewind() {
 Positions RunLists::saved_at(std::size_t body, int frame) {
   if (frame >= 0) return saved_positions(drawing_, body, std::min(frame, drawing_.frame_count - 1));
   const Vec3 origin = motion_origin(world_.bodies()[body].description.mesh.rest);
+  const std::optional<EarlierFrame>& from = scene().from;
+  if (const auto file = from ? RunRecord{from->run, {}, {}}.motion(world_.bodies()[body].def.name) : "";
+      !file.empty() && std::filesystem::exists(file))
+    return PointCacheReader(file).frame(from->frame).rowwise() + origin.transpose();
   const Positions first = first_positions(world_.bodies()[body]).rowwise() - origin.transpose();
   return as_cached(first).rowwise() + origin.transpose();
 }
@@ -95,7 +98,7 @@ void RunLists::load(const Moment& moment) {
 
 FramePose RunLists::pose(const Moment& moment) const {
   const int frame = moment.frame;
-  FramePose pose{frame, frame_time(frame, scene().fps), {}, {}};
+  FramePose pose{frame, scene().time_after(frame), {}, {}};
   if (moment.share > 0) pose.time += moment.share / scene().fps;
   if (drawing_.smooth > 1) pose.interval = picture_step() / scene().fps;
   for (const Positions& body : motion_) pose.motion.push_back(&body);

@@ -287,7 +287,9 @@ Anchors rest_anchors(const Model& model, const Body& body) {
 
 }  // namespace
 
-Positions first_positions(const Body& body) {
+Positions first_positions(const Body& body) { return body.from ? body.from->x : scene_start(body); }
+
+Positions scene_start(const Body& body) {
   const Positions& rest = body.description.mesh.rest;
   Positions start = start_positions(body.def.start, rest, body.seed, body.description.name);
   start.rowwise() += body.start_move.transpose();
@@ -315,7 +317,43 @@ void add_spin(const Model& model, const Vec3& spin, State& state) {
 
 }  // namespace
 
+namespace {
+
+// Puts what an earlier run's handle held under the handle of the same name.
+void take_over(const EarlierState::Held& held, const Model& model, const Body& body, Anchors& anchors) {
+  const auto found = std::ranges::find(body.def.handles, held.handle, &HandleDef::name);
+  if (found == body.def.handles.end()) return;
+  const auto handle = static_cast<std::int32_t>(found - body.def.handles.begin());
+  anchors.centers[std::size_t(handle)] = held.center;
+  anchors.holds[std::size_t(handle)] = held.holds;
+  for (std::size_t i = 0; i < model.handled.size(); ++i) {
+    if (model.handled[i].handle != handle) continue;
+    const auto vertex = std::ranges::find(held.vertices, model.input_of[model.handled[i].vertex]);
+    if (vertex != held.vertices.end())
+      anchors.points.row(Eigen::Index(i)) = held.points.row(vertex - held.vertices.begin());
+  }
+}
+
+// Returns the state of a body that goes on from an earlier run.
+State later_state(const Model& model, const Body& body, const EarlierState& from) {
+  State state = rest_state(model);
+  for (int v = 0; v < model.vertices; ++v) {
+    state.x.row(v) = from.x.row(model.input_of[v]);
+    state.v.row(v) = from.v.row(model.input_of[v]);
+  }
+  state.time = from.time;
+  state.anchors = rest_anchors(model, body);
+  for (std::size_t h = 0; h < body.def.handles.size(); ++h)
+    if (body.def.handles[h].grabs) state.anchors.holds[h] = 0;  // it takes hold in the first step, of where the body is
+  for (const EarlierState::Held& held : from.handles) take_over(held, model, body, state.anchors);
+  if (from.memory) state.memory = *from.memory;
+  return state;
+}
+
+}  // namespace
+
 State start_state(const Model& model, const Body& body) {
+  if (body.from) return later_state(model, body, *body.from);
   State state = rest_state(model);
   const Positions start = first_positions(body);
   for (int v = 0; v < model.vertices; ++v) {

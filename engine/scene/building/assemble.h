@@ -22,6 +22,8 @@ void add_handle(Body& body, const HandleDef& def, std::vector<Problem>& problems
 
 // Returns the positions in which a body starts, by vertex of its mesh [m].
 Positions first_positions(const Body& body);
+// Returns those in which it is when the clock is at 0, which is earlier where the film goes on from another run.
+Positions scene_start(const Body& body);
 // Returns the state in which a body starts: handled vertices are at rest, and handles move them from there.
 State start_state(const Model& model, const Body& body);
 

@@ -10,8 +10,25 @@
 #include "scene/definition/keyed_motion.h"
 #include "scene/definition/scene_def.h"
 #include "sim/model/model.h"
+#include "sim/model/solver_memory.h"
 
 namespace supple {
+
+// Holds where a body of an earlier run was at the end of a frame, for a film that goes on from there.
+struct EarlierState {
+  Positions x, v;  // by vertex of the body's mesh [m], [m/s]
+  // Names a handle, and the places from which it moves its vertices, if it held them.
+  struct Held {
+    std::string handle;
+    std::vector<std::int32_t> vertices;  // of the body's mesh
+    Positions points;                    // by vertex of these [m]
+    Vec3 center;                         // what keys turn about [m]
+    bool holds;
+  };
+  std::vector<Held> handles;
+  double time = 0;                     // [s]
+  std::optional<SolverMemory> memory;  // nothing where the body is another one now
+};
 
 // Represents a body that is ready to be simulated and drawn, between what a file says of it (BodyDef, scene_def.h) and
 // what a step needs (Model, which build_model makes of `description`, and State). MovingBody (world/) moves it.
@@ -40,6 +57,7 @@ struct Body {
   Positions unplaced;                           // the rest positions of the mesh in the file's frame
   std::uint64_t seed = 0;                       // of its random start
   std::vector<Overlap> overlaps;                // at the start; what the scene does about them is in its definition
+  std::optional<EarlierState> from;             // nothing: the body starts as its definition says
   Vec3 start_move = Vec3(0, 0, 0);              // the move out of colliders that the body would start in [m]
   Eigen::Affine3d placement = no_placement();   // from the file's frame to the world: turned, scaled, moved
 };

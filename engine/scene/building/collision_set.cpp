@@ -171,11 +171,25 @@ Skin drawn_collider(const SceneCollider& collider, const Bounds& around) {
   return creased;
 }
 
+namespace {
+
+// Returns the vertices of a surface that deforms, in the collider's frame.
+Positions deformed_places(const SceneCollider& collider, double time) {
+  return in_frame_of_shape(collider.def.shape.root.parts.front(),
+                           collider.def.motion->motion->points_at(collider.frame(time)));
+}
+
+}  // namespace
+
 Positions drawn_places(const SceneCollider& collider, const Skin& skin, double time) {
   if (skin.vertex_of.empty()) return skin.rest.points;
-  const Positions points = in_frame_of_shape(collider.def.shape.root.parts.front(),
-                                             collider.def.motion->motion->points_at(collider.frame(time)));
-  return points(skin.vertex_of, Eigen::all);
+  return deformed_places(collider, time)(skin.vertex_of, Eigen::all);
+}
+
+Positions world_places(const SceneCollider& collider, double time) {
+  const Eigen::Isometry3d pose = collider.pose(time);
+  const Positions places = deformed_places(collider, time);
+  return (places * pose.linear().transpose()).rowwise() + pose.translation().transpose();
 }
 
 }  // namespace supple

@@ -61,6 +61,9 @@ Skin drawn_collider(const SceneCollider& collider, const Bounds& around);
 // Returns the places of that skin's vertices at a time [s], in the collider's frame.
 Positions drawn_places(const SceneCollider& collider, const Skin& skin, double time);
 
+// Returns where the vertices of the surface of a collider that deforms are at a time [s], in the world [m].
+Positions world_places(const SceneCollider& collider, double time);
+
 // Tells whether a collider is a half space and nothing else.
 bool is_half_space(const SceneCollider& collider);
 

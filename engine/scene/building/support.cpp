@@ -308,6 +308,7 @@ std::vector<Support> supports_of(const Body& body) {
   if (body.description.handles.empty()) return supports;
   Frame frame = frame_of(body);
   for (std::size_t h = 0; h < body.description.handles.size(); ++h) {
+    if (body.def.handles[h].attach) continue;  // what carries it is seen already
     const Handle& handle = body.description.handles[h];
     const auto add = [&](TriMesh&& one) {
       one.points = one.points * frame.turn.transpose();

@@ -203,7 +203,7 @@ namespace {
 // the names of a node are looked up.
 template <class FolderOf>
 void make_absolute(toml::node& node, std::string_view key, const FolderOf& folder_of) {
-  static constexpr std::array file_keys = {"surface", "shape", "mesh", "ghost", "reference"};
+  static constexpr std::array file_keys = {"surface", "shape", "mesh", "ghost", "reference", "run"};
   if (toml::table* table = node.as_table()) {
     const std::string path = (*table)["path"].value_or(std::string());  // of a change, which says what its value is
     for (auto&& [name, inner] : *table)

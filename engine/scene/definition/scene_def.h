@@ -59,6 +59,12 @@ struct Names<Ease> {
   static constexpr std::array table = {Name{Ease::smooth, "smooth"}, Name{Ease::linear, "linear"}};
 };
 
+// Names what takes a handle along: a collider or another body.
+struct AttachDef {
+  std::string collider, body;  // one of the two is empty
+  FilePlace place;
+};
+
 struct HandleDef {
   std::string name;
   Selection select;
@@ -69,6 +75,7 @@ struct HandleDef {
   double from = 0, until = std::numeric_limits<double>::infinity();
   Ease ease = Ease::smooth;
   std::vector<MotionKey> keys;
+  std::optional<AttachDef> attach;  // what its vertices go with; it then has no keys and takes hold at the start
 
   // Tells whether the handle holds its vertices in a step that starts at a time [s].
   bool holds_at(double time) const { return time >= from - 1e-9 && time < until - 1e-9; }
@@ -113,8 +120,8 @@ struct ClothDef {
 
 // Describes how the steps of a body are solved: the table [solver]. `settings` are part of every step's inputs and cost
 // nothing to change. The other members are built into the model (fit, precision, integrator, damping: assemble.cpp),
-// select the rule for directions (method), or are read by MovingBody (untangle). live_keys.cpp defines what a change of
-// each costs.
+// select the rule for directions (method), or are read by MovingBody (calming, untangle). live_keys.cpp defines what a
+// change of each costs.
 struct SolverDef {
   Method method = Method::quasi_newton;
   SolverSettings settings;
@@ -122,6 +129,7 @@ struct SolverDef {
   Precision precision = Precision::single_precision;
   Integrator integrator = Integrator::backward_euler;
   double damping = 0;     // beta [s]
+  double calming = 0;     // rate at which movement within the body dies down (sim/solver/calming.h) [1/s]
   bool untangle = false;  // makes steps that start tangled those of a body as rigid as possible (moving_body.h)
 };
 
@@ -391,6 +399,13 @@ struct OutputDef {
   std::vector<PicturePass> passes = {};  // pictures in numbers beside those of the film, in ascending order
 };
 
+// Names the frame of an earlier run with whose end a film begins.
+struct EarlierFrame {
+  std::filesystem::path run;  // the folder of the run
+  int frame = 0;              // of the run
+  FilePlace place;
+};
+
 struct SceneDef {
   std::string name;   // of the file, without folder and ending
   std::string title;  // shown in pictures where text.title asks for it
@@ -398,8 +413,9 @@ struct SceneDef {
   double fps = 30;
   int substeps = 1;
   Vec3 gravity = Vec3(0, -9.81, 0);
-  std::uint64_t seed = 1;    // of random start states, and of gusts
-  std::optional<Wind> wind;  // nothing: there is no air
+  std::uint64_t seed = 1;            // of random start states, and of gusts
+  std::optional<EarlierFrame> from;  // nothing: the film begins at time 0, as the scene says
+  std::optional<Wind> wind;          // nothing: there is no air
   std::vector<BodyDef> bodies;
   std::vector<ColliderDef> colliders;
   CameraDef camera;
@@ -411,6 +427,14 @@ struct SceneDef {
   std::filesystem::path assets;
 
   double time_step() const { return 1 / (fps * substeps); }
+  // Returns how many frames the clock has behind it when the film begins. Frames of the film are counted from 0.
+  int frames_before() const { return from ? from->frame + 1 : 0; }
+  // Returns the time at which the film begins [s].
+  double time_at_start() const { return frames_before() / fps; }
+  // Returns the time after the steps of a frame [s], which its picture shows: its caption, the contact sheet, the run's
+  // page, tables and files all tell it. A film begins with bodies that no picture shows; without `from`, frame 0 is at
+  // 1 / fps.
+  double time_after(int frame) const { return (frames_before() + frame + 1) / fps; }
   // Tells whether there is anything that a body may touch, besides itself. Runs keep contact forces where there is.
   bool may_touch() const { return !colliders.empty() || bodies.size() > 1; }
 };

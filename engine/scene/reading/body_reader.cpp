@@ -86,6 +86,17 @@ Selection read_selection(const ConfigTable& handle) {
   return s;
 }
 
+std::optional<AttachDef> read_attach(const ConfigTable& handle) {
+  const auto table = handle.table({"attach", "", "what the vertices go with: a collider, or another body"});
+  if (!table) return std::nullopt;
+  AttachDef attach;
+  attach.collider = table->text({"collider", "", "by its surface, where it deforms, and else as a whole"}, "");
+  attach.body = table->text({"body", "", "by its surface; it does not feel what goes with it"}, "");
+  attach.place = handle.place("attach");
+  if (attach.collider.empty() == attach.body.empty()) table->complain("attach: either `collider` or `body`");
+  return attach;
+}
+
 HandleDef read_handle(const ConfigTable& table) {
   HandleDef handle;
   handle.name = table.text({"name", "", "addresses the handle in --set and in messages"}, std::nullopt);
@@ -104,6 +115,10 @@ HandleDef read_handle(const ConfigTable& table) {
   if (handle.until <= handle.from) table.complain("until", "until: must be later than 'from'");
   if (handle.grabs && handle.stiffness <= 0)
     table.complain("stiffness", "a handle that grabs or lets go needs a number as its stiffness [N/m]");
+  handle.attach = read_attach(table);
+  if (handle.attach && handle.from > 0)
+    table.complain("from", "from: an attached handle holds its vertices from the start");
+  if (handle.attach && table.has("keys")) table.complain("keys", "keys: what the handle is attached to moves it");
   handle.ease = read_ease(table);
   handle.keys = read_keys(table, "rotation about the handle's centre: x, then y, then z");
   return handle;

@@ -42,6 +42,25 @@ void read_size(const ConfigTable& table, OutputDef& output) {
   output.height = size->height;
 }
 
+// Refuses handles that are attached to what is not there, or to the body that they hold.
+void check_attached(const SceneDef& scene, Config& config, const std::set<std::string>& bodies,
+                    const std::set<std::string>& colliders) {
+  for (const BodyDef& body : scene.bodies) {
+    for (const HandleDef& handle : body.handles) {
+      if (!handle.attach) continue;
+      const bool to_body = handle.attach->collider.empty();
+      const std::string& name = to_body ? handle.attach->body : handle.attach->collider;
+      const std::set<std::string>& all = to_body ? bodies : colliders;
+      if (to_body && name == body.name)
+        config.complain({handle.attach->place, fmt::format("attach: body '{}' cannot hold itself", name)});
+      else if (!name.empty() && !all.contains(name))
+        config.complain(
+            {handle.attach->place, fmt::format("attach: no {} is called '{}'{}", to_body ? "body" : "collider", name,
+                                               did_you_mean(name, std::vector<std::string>(all.begin(), all.end())))});
+    }
+  }
+}
+
 }  // namespace
 
 SceneDef read_scene(Config& config) {
@@ -58,6 +77,7 @@ SceneDef read_scene(Config& config) {
   scene.gravity = root.vector({"gravity", "m/s^2", "acceleration of free fall"}, scene.gravity);
   scene.seed = static_cast<std::uint64_t>(
       root.integer({"seed", "", "of random start states and of gusts"}, 1, Range::between(0, 2e9)));
+  scene.from = read_from(root);
   scene.wind = read_wind(root, scene.seed);
   SolverDef defaults;
   if (const auto solver = root.table({"solver", "", "for all bodies"})) defaults = read_solver(*solver, defaults);
@@ -86,6 +106,7 @@ SceneDef read_scene(Config& config) {
       table.complain("name", fmt::format("two colliders named '{}'", scene.colliders.back().name));
   }
   if (scene.bodies.empty()) root.complain("a scene needs at least one [[body]]");
+  check_attached(scene, config, names, colliders);
 
   if (const auto camera = root.table({"camera", "", "where the film is seen from"})) {
     scene.camera = read_camera(*camera, scene.camera);

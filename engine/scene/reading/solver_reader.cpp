@@ -177,6 +177,10 @@ SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults) {
   solver.damping =
       table.number({"damping", "s", "beta of stiffness-proportional damping; also slows turning as a whole"},
                    defaults.damping, Range::at_least(0));
+  solver.calming = table.number({"calming", "1/s",
+                                 "rate at which movement within a body dies down; falling, turning and swinging as a "
+                                 "whole go on"},
+                                defaults.calming, Range::at_least(0));
   return solver;
 }
 

@@ -60,6 +60,17 @@ constexpr std::array start_keys = {
 
 }  // namespace
 
+std::optional<EarlierFrame> read_from(const ConfigTable& root) {
+  const auto table = root.table({"from", "", "the frame of an earlier run with whose end this film begins"});
+  if (!table) return std::nullopt;
+  EarlierFrame from;
+  from.run =
+      table->text({"run", "", "folder of the run: bodies of the same name go on from where they were"}, std::nullopt);
+  from.frame = table->integer({"frame", "", "of that run, counted from 0"}, std::nullopt, Range::between(0, 1000000));
+  from.place = table->place("run");
+  return from;
+}
+
 StartDef read_start(const ConfigTable& body) {
   StartDef start = AtRest{};
   const auto table = body.table({"start", "", "where it starts, if not at rest: exactly one of the keys below"});

@@ -38,6 +38,9 @@ std::optional<Wind> read_wind(const ConfigTable& root, std::uint64_t seed);
 std::optional<DragCoefficients> read_drag(const ConfigTable& body);
 std::optional<GasFilling> read_pressure(const ConfigTable& body);
 
+// Reads [from] of a scene's root; nothing where it is absent.
+std::optional<EarlierFrame> read_from(const ConfigTable& root);
+
 ColliderDef read_collider(const ConfigTable& table);
 
 // Reads [camera]. Keys that contradict each other are problems, and keys of a motion that are not in order of time.

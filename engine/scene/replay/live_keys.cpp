@@ -27,6 +27,7 @@ constexpr auto patterns = std::to_array<LivePattern>({
     {"solver.fit_to", new_factor},
     {"solver.integrator", new_factor},
     {"solver.damping", new_factor},
+    {"solver.calming", nothing},
     {"solver.iterations", nothing},
     {"solver.history", nothing},
     {"solver.levels", nothing},

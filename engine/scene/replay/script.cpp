@@ -5,7 +5,6 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "base/frame_time.h"
 #include "base/text.h"
 #include "scene/reading/model_scene.h"
 #include "scene/reading/replay_start.h"
@@ -112,9 +111,10 @@ Config Script::Parts::document_at(double time, std::size_t count, std::optional<
 }
 
 bool Script::Parts::at_work(const TimedChange& change, int frame) const {
-  const double from = frame / start.fps, to = frame_time(frame, start.fps);
+  const double from = start.time_after(frame - 1), to = start.time_after(frame);
   if (change.over <= 0)
-    return change.at > time_tolerance && change.at > from - time_tolerance && change.at < to - time_tolerance;
+    return change.at > start.time_at_start() + time_tolerance && change.at > from - time_tolerance &&
+           change.at < to - time_tolerance;
   return change.at < to - time_tolerance && change.at + change.over > from + time_tolerance;
 }
 
@@ -200,7 +200,7 @@ Script Script::load(const SceneSource& source, const std::filesystem::path& asse
     if (sweep_point) put_sweep_point(parts->scene_file, *sweep_point);
   }
   parts->start.name = source.name();
-  Config document = parts->document_at(at_start, parts->changes.size());
+  Config document = parts->document_at(parts->first_moment(), parts->changes.size());
   parts->start = parts->read(document);
   return Script(std::move(parts));
 }
@@ -227,7 +227,7 @@ std::vector<const TimedChange*> Script::at_work(int frame) const {
 }
 
 SceneDef Script::scene_at(int frame) const {
-  Config document = parts_->document_at(frame_time(frame, parts_->start.fps), parts_->changes.size());
+  Config document = parts_->document_at(parts_->start.time_after(frame), parts_->changes.size());
   return parts_->read(document);
 }
 
@@ -241,7 +241,7 @@ void Script::Parts::apply_edits() {
   changes = unedited->changes;
   changes.insert(changes.end(), edits.changes.begin(), edits.changes.end());
   std::ranges::stable_sort(changes, {}, &TimedChange::at);
-  Config document = document_at(at_start, changes.size());
+  Config document = document_at(first_moment(), changes.size());
   start = read(document);
 }
 
@@ -272,7 +272,7 @@ void Script::add(TimedChange change) {
   const auto place = std::ranges::upper_bound(parts_->changes, change.at, {}, &TimedChange::at);
   parts_->edits.changes.push_back(*std::prev(place));
   if (!from_start) return;
-  Config document = parts_->document_at(at_start, parts_->changes.size());
+  Config document = parts_->document_at(parts_->first_moment(), parts_->changes.size());
   parts_->start = parts_->read(document);
 }
 
@@ -324,8 +324,8 @@ Script Script::with(const std::vector<std::string>& settings) const {
                                              std::nullopt,
                                              own.session,
                                              settings});
-  parts->start.name = own.start.name;
-  Config document = parts->document_at(at_start, parts->changes.size());
+  parts->start = own.start;
+  Config document = parts->document_at(parts->first_moment(), parts->changes.size());
   parts->start = parts->read(document);
   return Script(std::move(parts));
 }
@@ -358,7 +358,7 @@ void warn_of_broken_ramps(const std::vector<TimedChange>& changes, std::vector<P
 
 std::vector<Problem> Script::warnings() const {
   std::vector<Problem> list;
-  const double end = parts_->start.frames / parts_->start.fps;
+  const double end = parts_->start.time_after(parts_->start.frames - 1);
   const auto warn = [&list](const FilePlace& place, std::string message) {
     list.push_back({place, std::move(message)});
   };
@@ -375,7 +375,7 @@ std::vector<Problem> Script::warnings() const {
     for (const HandleDef& handle : body.handles) {
       bool holds = !handle.grabs;
       for (int step = 0; step < parts_->start.frames * parts_->start.substeps && !holds; ++step)
-        holds = handle.holds_at(step * parts_->start.time_step());
+        holds = handle.holds_at(parts_->start.time_at_start() + step * parts_->start.time_step());
       if (!holds)
         warn(handle.select.place,
              fmt::format("handle '{}' of body '{}' never holds: from {:g} to {:g} s no step of this film begins",
@@ -385,11 +385,16 @@ std::vector<Problem> Script::warnings() const {
   return list;
 }
 
-std::string Script::scene_json() const { return parts_->document_at(at_start, parts_->changes.size()).as_json(); }
+std::string Script::scene_json() const {
+  return parts_->document_at(parts_->first_moment(), parts_->changes.size()).as_json();
+}
+std::string Script::scene_json_at(int frame) const {
+  return parts_->document_at(parts_->start.time_after(frame), parts_->changes.size()).as_json();
+}
 std::string Script::replay_json() const { return parts_->replay ? parts_->replay->as_json() : ""; }
 
 std::vector<LiveKey> Script::live(std::optional<int> frame) const {
-  const double time = frame ? frame_time(*frame, parts_->start.fps) : at_start;
+  const double time = frame ? parts_->start.time_after(*frame) : parts_->first_moment();
   Config document = parts_->document_at(time, parts_->changes.size());
   open_tables(document);
   for (const BodyDef& body : parts_->start.bodies) {

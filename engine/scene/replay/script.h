@@ -64,8 +64,9 @@ class Script {
   // Returns the same with settings, as --set takes them, that hold at any time, whatever changes. Throws InputError.
   Script with(const std::vector<std::string>& settings) const;
 
-  std::string scene_json() const;   // as the film starts
-  std::string replay_json() const;  // the file of the replay itself; empty for a scene
+  std::string scene_json() const;              // as the film starts
+  std::string scene_json_at(int frame) const;  // at the end of a frame
+  std::string replay_json() const;             // the file of the replay itself; empty for a scene
   // Lists what can change, with the values at the start of the film, or at the end of a frame.
   std::vector<LiveKey> live(std::optional<int> frame = {}) const;
 

@@ -4,7 +4,6 @@
 #include <iterator>
 #include <utility>
 
-#include "base/frame_time.h"
 #include "scene/reading/scene_reader.h"
 #include "scene/reading/table_readers.h"
 #include "scene/replay/script_parts.h"
@@ -166,12 +165,12 @@ void Script::Parts::check_frames(int first, int end, Reported& reported) {
       frames.push_back(frame);
   }
   const auto check = [&](std::size_t i) {
-    check_at(frame_time(frames[i], start.fps), fmt::format(" (first in frame {})", frames[i]), reported);
+    check_at(start.time_after(frames[i]), fmt::format(" (first in frame {})", frames[i]), reported);
   };
   const std::size_t stride = 1 + frames.size() / most_checked;
   for (std::size_t i = 0; i < frames.size() && problems.size() < most_problems; i += stride) {
     const std::size_t last = std::min(i + stride, frames.size()) - 1;
-    if (stride > 1 && problems_of(document_at(frame_time(frames[last], start.fps), changes.size())).empty()) continue;
+    if (stride > 1 && problems_of(document_at(start.time_after(frames[last]), changes.size())).empty()) continue;
     for (std::size_t between = i; between <= last; ++between) check(between);
   }
 }
@@ -181,7 +180,7 @@ void Script::Parts::check_changes() {
     put_each();
     prepare_ramps();
     Reported reported;
-    check_at(at_start, "", reported);
+    check_at(first_moment(), "", reported);
     check_frames(0, start.frames, reported);
   } catch (const InputError& error) {  // a change depends on one that was removed
     if (problems.empty()) throw;
@@ -195,8 +194,9 @@ void Script::Parts::check_changes() {
 void Script::Parts::add_change(TimedChange change) {
   const auto place = std::ranges::upper_bound(changes, change.at, {}, &TimedChange::at);
   const auto index = static_cast<std::size_t>(place - changes.begin());
-  const int first = static_cast<int>(std::lround(change.at * start.fps));
-  const int end = std::max(start.frames, 1 + static_cast<int>(std::ceil((change.at + change.over) * start.fps)));
+  const int first = static_cast<int>(std::lround(change.at * start.fps)) - start.frames_before();
+  const int end = std::max(
+      start.frames, 1 + static_cast<int>(std::ceil((change.at + change.over) * start.fps)) - start.frames_before());
   changes.insert(place, std::move(change));
   problems.clear();
   try {
@@ -205,7 +205,7 @@ void Script::Parts::add_change(TimedChange change) {
     if (put(document, added.path, added.to, added.place) && added.over > 0) add_problems(prepare(added, index));
     if (problems.empty()) {
       Reported reported;
-      if (first == 0) check_at(at_start, "", reported);
+      if (first == 0) check_at(first_moment(), "", reported);
       check_frames(first, end, reported);
     }
   } catch (const InputError& error) {

@@ -33,6 +33,8 @@ struct Script::Parts {
   // Returns the scene's document at a time, with the first `count` changes applied. One of them can be left out.
   Config document_at(double time, std::size_t count, std::optional<std::size_t> left_out = {}) const;
   bool at_work(const TimedChange& change, int frame) const;
+  // Returns the time of the start of the film, when jumps at its beginning have already taken effect [s].
+  double first_moment() const { return start.time_at_start() + at_start; }
   SceneDef read(Config& document) const;
   // Throws InputError when the scene cannot be read. Problems of the replay itself are added to `problems`.
   void read_replay(const std::filesystem::path& assets, const std::vector<std::string>& settings,

@@ -1,0 +1,19 @@
+// Finds what an earlier run was made from, for those who draw it again or go on from it.
+#pragma once
+
+#include "film/plan/loaded_film.h"
+#include "output/run/run_record.h"
+
+namespace supple {
+
+// Returns the plan of a run's film. scene: the scene's file, where it is not where the run found it; else empty.
+// settings: path=value, after those of the run. Throws InputError when the run does not tell its scene, or the scene is
+// no longer there.
+FilmPlan plan_of_run(const RunRecord& run, const std::filesystem::path& scene,
+                     const std::vector<std::string>& settings);
+
+// Refuses a film that would move in another way than the run did: one with other values than those of what is seen,
+// other changes, or other meshes. Throws InputError with all differences.
+void check_same_motion(const RunRecord& run, const LoadedFilm& film);
+
+}  // namespace supple
