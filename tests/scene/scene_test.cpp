@@ -250,6 +250,7 @@ material = {0}
 name = "a"
 select = {{ region = "x", box = [[0, 0, 0], [1, 1, 1]], sphere = {{ center = [0, 0, 0], radius = 1 }}, plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }} }}
 keys = [{{ t = 0 }}]
+attach = {{}}
 [[body]]
 name = "cloth"
 cloth = {{ stretch = 1 }}
@@ -271,6 +272,7 @@ keys = [{{ t = 0 }}]
 [text]
 [output]
 [wind]
+[from]
 [[scatter]]
 [sweep.values]
 )",
