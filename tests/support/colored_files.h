@@ -13,12 +13,9 @@
 
 #include "output/files/png_file.h"
 #include "support/surfaces.h"
+#include "support/text_file.h"
 
 namespace supple::test {
-
-inline void write_text(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
 
 // Returns a surface as an ASCII PLY file says it; color: three bytes of sRGB by vertex.
 template <class Color>

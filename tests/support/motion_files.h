@@ -11,13 +11,9 @@
 #include <vector>
 
 #include "geometry/meshes/mesh.h"
+#include "support/text_file.h"
 
 namespace supple::test {
-
-inline void write_text(const std::filesystem::path& path, const std::string& text) {
-  std::filesystem::create_directories(path.parent_path());
-  std::ofstream(path, std::ios::binary) << text;
-}
 
 inline std::string obj_text(const Positions& points, const Triangles& triangles) {
   std::string text;
