@@ -299,7 +299,7 @@ void LiveSession::release(const std::string& body, const std::string& name) {
   const auto is_this = [&](const LiveGrab& grab) { return grab.body == body && grab.name == name; };
   const std::vector<LiveGrab> all = holding();
   const auto grab = std::ranges::find_if(all, is_this);
-  if (grab != all.end() && grab->from >= world_.frames() / world_.scene().fps) {
+  if (grab != all.end() && grab->from >= world_.scene().fps.time_of(world_.frames())) {
     if (!is_pending(*grab)) pending_.push_back({body, name});
     return;
   }

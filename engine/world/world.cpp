@@ -44,7 +44,7 @@ struct World::Parts {
     has_failed = false;
   }
   // Returns when the next frame begins [s].
-  double next_time() const { return (frame + 1) / scene.fps; }
+  double next_time() const { return scene.fps.time_of(frame + 1); }
   void take_edits(LiveEdits edits);
   // Changes the scene before its first frame.
   void begin_with(SceneDef scene, const std::vector<TimedChange>& changes) {

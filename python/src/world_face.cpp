@@ -250,7 +250,7 @@ void WorldFace::move(const std::string& body, const std::string& handle, const p
   bool first = false;
   {
     const Lock held = whole();
-    const double now = held->world.frames() / held->world.scene().fps;
+    const double now = held->world.scene().fps.time_of(held->world.frames());
     const std::vector<LiveGrab>& grabs = held->world.script().edits().grabs;
     const bool holds = std::ranges::any_of(
         grabs, [&](const LiveGrab& grab) { return grab.body == body && grab.name == handle && grab.until > now; });

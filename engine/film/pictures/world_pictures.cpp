@@ -22,7 +22,7 @@ class WorldPictures::Studio {
  public:
   Studio(const Script& script, const World& world, std::vector<DrawnBody> drawn, std::string key)
       : key_(std::move(key)),
-        film_(script, world.bodies(), std::move(drawn), world.colliders(), caption_font()),
+        film_(script, world.bodies(), std::move(drawn), world.colliders(), caption_font(script.scene().text)),
         nearest_(distance_of(film_.stage().first_camera)) {
     const BlockedSignals meanwhile;  // the thread that asks for pictures takes signals
     thread_ = std::thread([this] { draw_all(); });
@@ -100,7 +100,7 @@ WorldPictures::Pose WorldPictures::present_pose() {
     }
   }
   pose.frame.frame = std::max(frames - 1, 0);
-  pose.frame.time = frames / world_.scene().fps;
+  pose.frame.time = world_.scene().fps.time_of(frames);
   const auto point_to = [](const std::vector<Positions>& from, std::vector<const Positions*>& to) {
     for (const Positions& one : from) to.push_back(&one);
   };

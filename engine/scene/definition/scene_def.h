@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/frame_rate.h"
 #include "base/names.h"
 #include "base/picture_pass.h"
+#include "geometry/files/source_file.h"
 #include "geometry/skins/skin.h"
 #include "scene/definition/start_state.h"
 #include "scene/definition/surface_motion.h"
@@ -370,8 +372,19 @@ struct FieldDef {
   std::filesystem::path reference;  // folder of the run to which distances are measured
 };
 
+// Holds a line of text that pictures show from one time of the film to another. The picture of a frame shows it when
+// the frame's time t has from < t <= to: a player that shows the frames one after the other shows it from `from` to
+// `to`.
+struct Subtitle {
+  double from = 0, to = 0;  // [s]
+  std::string text;         // in UTF-8; a newline begins another line
+  FilePlace place;          // in the scene or in its file of subtitles
+};
+
 // Chooses what pictures say in words; each part can be switched.
 struct TextDef {
+  std::string font;  // family of the letters; empty: the usual one
+  FilePlace font_place;
   // The title and the time stand in the upper left corner.
   bool title = false, time = false;
   // These numbers stand below the caption of each body, and tell of its steps in the frame.
@@ -379,6 +392,9 @@ struct TextDef {
   bool notes() const { return method || milliseconds || iterations || error; }
   // These are small graphs over the film so far, in a corner.
   bool error_graph = false, time_graph = false;
+  // These stand at the lower edge, in order of their begin.
+  std::vector<Subtitle> subtitles;
+  std::optional<SourceFile> subtitle_file;  // from which some of them are
 };
 
 struct OutputDef {
@@ -395,7 +411,7 @@ struct SceneDef {
   std::string name;   // of the file, without folder and ending
   std::string title;  // shown in pictures where text.title asks for it
   int frames = 120;
-  double fps = 30;
+  FrameRate fps = 30;
   int substeps = 1;
   Vec3 gravity = Vec3(0, -9.81, 0);
   std::uint64_t seed = 1;    // of random start states, and of gusts

@@ -17,15 +17,15 @@ namespace supple {
 namespace {
 
 // Reads a time, given in seconds or as a frame.
-double read_time(const ConfigTable& table, double fps, const Key& seconds, const Key& frames, bool required) {
+double read_time(const ConfigTable& table, const FrameRate& fps, const Key& seconds, const Key& frames, bool required) {
   const auto in_seconds = table.number_if_given(seconds, Range::at_least(0));
-  std::optional<double> in_frames;
+  std::optional<int> in_frames;
   if (table.has(frames.name)) in_frames = table.integer(frames, std::nullopt, Range::between(0, 1000000));
   if (in_seconds && in_frames)
     table.complain(frames.name, fmt::format("either '{}' or '{}', not both", seconds.name, frames.name));
   if (required && !in_seconds && !in_frames)
     table.complain(fmt::format("when? '{}' [s] or '{}' is missing", seconds.name, frames.name));
-  return in_seconds ? *in_seconds : in_frames.value_or(0) / fps;
+  return in_seconds ? *in_seconds : fps.time_of(in_frames.value_or(0));
 }
 
 std::string object_of(const std::string& path) {
@@ -37,7 +37,7 @@ std::string object_of(const std::string& path) {
   return "";
 }
 
-std::optional<TimedChange> read_change(const ConfigTable& table, double fps) {
+std::optional<TimedChange> read_change(const ConfigTable& table, const FrameRate& fps) {
   const std::string path =
       table.text({"path", "", "the value, as --set takes it; `supple info --live SCENE` lists them"}, std::nullopt);
   const double at =
@@ -112,7 +112,7 @@ Config Script::Parts::document_at(double time, std::size_t count, std::optional<
 }
 
 bool Script::Parts::at_work(const TimedChange& change, int frame) const {
-  const double from = frame / start.fps, to = frame_time(frame, start.fps);
+  const double from = start.fps.time_of(frame), to = frame_time(frame, start.fps);
   if (change.over <= 0)
     return change.at > time_tolerance && change.at > from - time_tolerance && change.at < to - time_tolerance;
   return change.at < to - time_tolerance && change.at + change.over > from + time_tolerance;
@@ -358,7 +358,7 @@ void warn_of_broken_ramps(const std::vector<TimedChange>& changes, std::vector<P
 
 std::vector<Problem> Script::warnings() const {
   std::vector<Problem> list;
-  const double end = parts_->start.frames / parts_->start.fps;
+  const double end = parts_->start.fps.time_of(parts_->start.frames);
   const auto warn = [&list](const FilePlace& place, std::string message) {
     list.push_back({place, std::move(message)});
   };
