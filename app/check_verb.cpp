@@ -81,7 +81,7 @@ std::vector<Warning> warnings_of(const Checked& checked) {
     later.message = "supple render refuses this: " + later.message;
     list.push_back({std::nullopt, std::move(later)});
   }
-  if (auto letters = letters_warning(checked.script, caption_font()))
+  if (auto letters = letters_warning(checked.script, caption_font(checked.script.scene().text)))
     list.push_back({std::nullopt, std::move(*letters)});
   for (const std::string& one : checked.missing)
     list.push_back({std::nullopt, {{checked.bodies.front().def.place.source}, one}});

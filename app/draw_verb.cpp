@@ -17,7 +17,9 @@
 #include "base/text.h"
 #include "base/timing.h"
 #include "film/pictures/film_stills.h"
+#include "film/pictures/picture_words.h"
 #include "film/plan/film_coding.h"
+#include "film/plan/shipped_files.h"
 #include "film/progress.h"
 #include "film/redraw/redraw.h"
 #include "film/redraw/skin_files.h"
@@ -36,7 +38,6 @@ struct DrawCommand {
   std::string size, field, range, reference;  // short forms of settings
   std::vector<std::string> passes;            // the same
   std::optional<std::size_t> frame, index;
-  std::optional<double> rate;
   int of = 1, jobs = 1;
   bool merge = false, skins = false, sheet = false, quiet = false;
   FilmCoding coding;
@@ -49,6 +50,16 @@ struct DrawCommand {
     return path + (skins ? "-skins" : "-drawn");
   }
 };
+
+// Reads --rate. Slow motion of a quick process may need few pictures a second of it, and no player shows a thousand.
+FrameRate rate_asked_for(const std::string& text) {
+  constexpr double lowest = 0.01, highest = 1000;
+  const std::optional<FrameRate> rate = FrameRate::parse(text);
+  if (rate && *rate >= lowest && *rate <= highest) return *rate;
+  throw InputError("--rate " + text, fmt::format("must be a number such as 25 or 23.976, or a fraction of two whole "
+                                                 "numbers such as 30000/1001, from {:g} to {:g}",
+                                                 lowest, highest));
+}
 
 int say_end(const DrawResult& result, const std::filesystem::path& folder) {
   if (result.end == FilmEnd::done) return 0;
@@ -154,7 +165,7 @@ std::vector<std::string> words_of_part(const DrawCommand& command, std::size_t i
       "--quiet"};
   if (plan.last >= 0) words.insert(words.end(), {"--last", std::to_string(plan.last)});
   if (plan.smooth > 1) words.insert(words.end(), {"--smooth", std::to_string(plan.smooth)});
-  if (plan.rate > 0) words.insert(words.end(), {"--rate", fmt::format("{}", plan.rate)});
+  if (plan.rate) words.insert(words.end(), {"--rate", plan.rate->text()});
   if (!plan.cache) words.emplace_back("--no-cache");
   if (!command.scene.empty()) words.push_back("--scene=" + command.scene);
   for (const std::string& setting : plan.settings) words.insert(words.end(), {"--set", setting});
@@ -269,7 +280,6 @@ int draw(DrawCommand command) {
   command.run = command.runs.front();
   command.plan.run = command.run;
   command.plan.scene = command.scene;
-  command.plan.rate = command.rate.value_or(0);
   command.plan.quiet = command.quiet;
   if (command.frame && !command.out.empty())
     throw InputError("--out", "is the folder of a film; the picture of one frame goes into the file of --still");
@@ -283,6 +293,9 @@ int draw(DrawCommand command) {
     throw InputError(fmt::format("--index {}", *command.index),
                      fmt::format("there are {} parts (--of): 0 to {}", command.of, command.of - 1));
   LoadedDrawing drawing = load_drawing(command.plan);
+  const Script& script = drawing.film.world.script();
+  if (const auto letters = letters_warning(script, caption_font(script.scene().text)); letters && !command.skins)
+    say(stderr, fmt::format("warning: {}\n", letters->text()));
   if (command.skins) return write_skin_files(command, drawing);
   if (command.frame || !command.still.empty()) return draw_one(command, drawing);
   coding_of(command, drawing);  // is refused before the folder is changed
@@ -320,7 +333,9 @@ void add_options(Verb& verb, DrawCommand& command) {
   verb.option("--smooth", plan.smooth, "pictures for each frame; those between frames are interpolated: slow motion")
       .between(1, 1000)
       .shows_default();
-  verb.option("--rate", command.rate, "frames a second of the film [as fast as it happened]").between(0.01, 1000.0);
+  verb.option(
+      "--rate", [&plan](const std::string& text) { plan.rate = rate_asked_for(text); },
+      "frames a second of the film, such as 25 or 30000/1001 [as fast as it happened]");
   const Option frame = verb.option("--frame", command.frame, "draw this frame alone, into the file of --still")
                            .between(std::size_t(0), std::size_t(1000000));
   verb.option("--still", command.still, "file for one picture [frame-NNNNNN.png]").needs(frame);

@@ -34,7 +34,7 @@ void say_remarks(const FilmPlan& plan, const LoadedFilm& film) {
   }
   for (const Problem& warning : said(all_warnings(film.world.script(), film.world.bodies())))
     say(stderr, fmt::format("warning: {}\n", warning.text()));
-  if (const auto letters = letters_warning(film.world.script(), caption_font());
+  if (const auto letters = letters_warning(film.world.script(), caption_font(scene.text));
       letters && plan.pictures != FilmPictures::none)
     say(stderr, fmt::format("warning: {}\n", letters->text()));
   for (const Body& body : film.world.bodies()) {
@@ -68,7 +68,8 @@ void say_place(const FilmPlan& plan, const RunPlace& place) {
 // Tells what the film's format cannot hold, which concerns what the film shows.
 void say_coding(const FilmPlan& plan, const SceneDef& scene) {
   if (!plan.wants_video()) return;
-  for (const std::string& warning : coding_warnings(coding_for(plan.coding, scene), scene.fps / plan.pictures_every()))
+  for (const std::string& warning :
+       coding_warnings(coding_for(plan.coding, scene), scene.fps.over(plan.pictures_every())))
     say(stderr, fmt::format("warning: {}\n", warning));
 }
 
@@ -88,8 +89,8 @@ void print_result(const FilmResult& result, const RunFolder& folder, const Scene
   const int made = result.rows.size() - result.kept_frames;
   const std::string kept = result.kept_frames > 0 ? fmt::format(" after {} from before", result.kept_frames) : "";
   const std::string rate = made > 0 ? fmt::format("{:.1f} a second; ", made / seconds) : "";
-  say(stdout, fmt::format("  {} frames{} in {} ({}the film's rate is {:g}), after {} of set-up\n", made, kept,
-                          duration_text(seconds), rate, scene.fps, duration_text(result.setup_ms / 1000)));
+  say(stdout, fmt::format("  {} frames{} in {} ({}the film's rate is {}), after {} of set-up\n", made, kept,
+                          duration_text(seconds), rate, scene.fps.text(), duration_text(result.setup_ms / 1000)));
   if (const std::string played = result.tally.session_text(); !played.empty())
     say(stdout, fmt::format("  session  {}\n", played));
   if (result.video_written) say(stdout, fmt::format("  film     {}\n", result.video.string()));
@@ -112,7 +113,8 @@ void print_json(const FilmResult& result, const RunFolder& folder) {
       result.video_written ? nlohmann::ordered_json(result.video.string()) : nlohmann::ordered_json(nullptr);
   json["video_message"] = result.video_message;
   json["verdict"] = verdict_on(result);
-  json["warnings"] = result.tally.warnings();
+  json["warnings"] = result.tally.remarks();
+  for (std::string& warning : result.tally.warnings()) json["warnings"].push_back(std::move(warning));
   say(stdout, fmt::format("{}\n", json_text(json)));
 }
 

@@ -110,9 +110,9 @@ std::string changes_text(const Script& script) {
   return text;
 }
 
-std::string deforming_text(const SurfaceMotionDef& motion, double scene_fps) {
-  return fmt::format(", deforms: {} frames at {:g} a second from {:g} s on", motion.motion->frames() - motion.first,
-                     motion.fps.value_or(scene_fps), motion.start);
+std::string deforming_text(const SurfaceMotionDef& motion, const FrameRate& scene_fps) {
+  return fmt::format(", deforms: {} frames at {} a second from {:g} s on", motion.motion->frames() - motion.first,
+                     motion.fps ? fmt::format("{:g}", *motion.fps) : scene_fps.text(), motion.start);
 }
 
 }  // namespace
@@ -126,8 +126,8 @@ std::string scene_summary(const SceneSource& source, int thread_count) {
   const SceneDef scene = world.scene();
   std::string text = fmt::format("scene           {}{}\n", printable(scene.name),
                                  scene.title.empty() ? "" : ": " + printable(scene.title));
-  text += fmt::format("film            {} frames at {:g} a second ({}), {} of {} s a frame, {} x {} pixels\n",
-                      scene.frames, scene.fps, duration_text(scene.frames / scene.fps),
+  text += fmt::format("film            {} frames at {} a second ({}), {} of {} s a frame, {} x {} pixels\n",
+                      scene.frames, scene.fps.text(), duration_text(scene.fps.time_of(scene.frames)),
                       scene.substeps == 1 ? "one step" : fmt::format("{} steps", scene.substeps),
                       fmt::format("{:.3g}", scene.time_step()), scene.output.width, scene.output.height);
   if (scene.from)

@@ -48,7 +48,7 @@ DrawPlan plan_of_panel(const SplitCommand& command, const std::string& run, int 
 struct Drawn {
   SplitScreen screen;
   std::vector<int> frames;  // of the runs, by picture: as many as all of them have
-  double rate = 0;
+  FrameRate rate = 30;
   DrawResult result;
 };
 

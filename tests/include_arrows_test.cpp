@@ -70,6 +70,8 @@ const std::vector<std::pair<std::regex, std::regex>> cages = {
     {std::regex("microhttpd\\.h"), std::regex("engine/live/(server\\.cpp|response\\.h)")},
     {std::regex("stb/.*"), std::regex("engine/geometry/reader/texture_reader\\.cpp")},
     {std::regex("(GL|EGL)/.*"), std::regex("engine/render/.*")},
+    {std::regex("fontconfig/.*"), std::regex("engine/render/font_search\\.cpp")},
+    {std::regex("raqm\\.h"), std::regex("engine/render/caption\\.cpp")},
     {std::regex("ft2build\\.h"), std::regex("engine/render/caption\\.cpp")},
     {std::regex("toml\\+\\+/.*"), std::regex("engine/scene/config/toml_document\\.h")},
     {std::regex("assimp/.*"), std::regex("engine/geometry/reader/assimp_(reader\\.cpp|(colors|files)\\.(h|cpp))")},

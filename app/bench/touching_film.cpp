@@ -59,7 +59,7 @@ bool TouchingFilm::play_until(int frames) {
   return true;
 }
 
-double TouchingFilm::time() const { return frames_ / world_.scene().fps; }
+double TouchingFilm::time() const { return world_.scene().fps.time_of(frames_); }
 
 Positions TouchingFilm::places(std::size_t body) const {
   return in_input_order(world_.body(body).model(), world_.body(body).state().x);

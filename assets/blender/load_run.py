@@ -15,12 +15,22 @@ import math
 import os
 import struct
 import sys
+from fractions import Fraction
 
 import bpy
 from mathutils import Matrix, Vector
 
 COLORS = "vertex colours"  # a layer that is called "color" is black in Cycles
 TO_BLENDER = Matrix.Rotation(math.pi / 2, 4, "X")
+
+
+def set_rate(given):
+    """Takes frames a second: a number, or a fraction such as "30000/1001", for which 29.97 stands as well."""
+    rate = float(Fraction(str(given)))
+    whole = max(1, round(rate))
+    of_television = abs(1.001 * rate - whole) < 5e-3 < abs(rate - whole)
+    bpy.context.scene.render.fps = whole
+    bpy.context.scene.render.fps_base = 1.001 if of_television else whole / rate
 
 
 def read_arguments():
@@ -221,9 +231,7 @@ def main():
     sun.rotation_euler = (math.radians(50), 0, math.radians(30))
     bpy.context.scene.collection.objects.link(sun)
     bpy.context.scene.frame_start, bpy.context.scene.frame_end = 0, frames - 1
-    fps = record.get("rate", scene.get("fps", 30))
-    bpy.context.scene.render.fps = max(1, round(fps))
-    bpy.context.scene.render.fps_base = bpy.context.scene.render.fps / fps
+    set_rate(record.get("rate", scene.get("fps", 30)))
     bpy.context.scene.frame_set(arguments.frame)
     if arguments.save:
         bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(arguments.save))

@@ -10,6 +10,7 @@
 #include "film/film_guide.h"
 #include "film/frame_loop.h"
 #include "film/pictures/film_stills.h"
+#include "film/pictures/picture_words.h"
 #include "film/pictures/reference_run.h"
 #include "film/plan/film_coding.h"
 #include "film/plan/film_solvers.h"
@@ -62,7 +63,10 @@ void check_pictures_asked(const FilmPlan& plan, const LoadedFilm& film) {
   std::vector<Problem> later = known_after_film(scene);
   if (!later.empty() && plan.pictures != FilmPictures::none) throw InputError(std::move(later));
   if (plan.wants_video()) coding_for(plan.coding, scene);
-  if (plan.pictures != FilmPictures::none) check_passes(scene);
+  if (plan.pictures != FilmPictures::none) {
+    check_passes(scene);
+    (void)caption_font(scene.text);  // refuses a family that is not installed
+  }
   if (plan.film_only && plan.coding.format == FilmFormat::png)
     throw InputError("--film-only", "leaves a film, and --format png makes none");
   if (plan.film_only && !run_program({"ffmpeg", "-version"}))
@@ -170,7 +174,7 @@ void begin_video(const FilmPlan& plan, const SceneDef& scene, const RunFolder& f
                  std::optional<VideoEncoder>& video) {
   const FilmCoding coding = coding_for(plan.coding, scene);
   video.emplace(folder.path() / film_file(coding.chosen()), scene.output.width, scene.output.height,
-                scene.fps / plan.pictures_every(), coding);
+                scene.fps.over(plan.pictures_every()), coding);
 }
 
 // Returns how many pictures the whole frames have.
@@ -225,6 +229,10 @@ FilmResult make_film(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
   if (video && begun && !result.rows.empty()) finish_video(plan, scene, folder, video, result);
   const bool has_files = plan.pictures == FilmPictures::all && !plan.film_only && !result.rows.empty();
   if (plan.stills && begun && has_files) make_stills(plan, scene, folder, result);
+  if (plan.pictures != FilmPictures::none) {
+    if (const auto letters = letters_warning(film.world.script(), caption_font(scene.text)))
+      result.tally.remark(letters->text());
+  }
   return result;
 }
 

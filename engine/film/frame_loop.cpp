@@ -158,7 +158,8 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
       compares_session_(folder != nullptr),
       errors_(film.world, solvers, threads_) {
   if (plan.pictures != FilmPictures::none) {
-    drawn_.emplace(world_.script(), world_.bodies(), std::move(film.drawn), world_.colliders(), caption_font());
+    drawn_.emplace(world_.script(), world_.bodies(), std::move(film.drawn), world_.colliders(),
+                   caption_font(world_.script().scene().text));
     if (!film.info.framed.empty()) drawn_->frame_motion(film.info.framed);
   }
   world_.start(solvers.steps, &threads_);
@@ -206,7 +207,7 @@ void FrameLoop::change_look(const std::vector<std::string>& settings) {
   std::vector<DrawnBody>& drawn = as_elements ? elements_ : skins_;
   if (drawn.empty())
     drawn = drawn_bodies(world_.bodies(), {UserCache::of_user(), {}}, as_elements ? DrawnAs::elements : DrawnAs::skin);
-  DrawnFilm film(script, world_.bodies(), drawn, world_.colliders(), caption_font());
+  DrawnFilm film(script, world_.bodies(), drawn, world_.colliders(), caption_font(script.scene().text));
   drawn_.emplace(std::move(film));
   look_ = script.scene();
   last_motion_.clear();

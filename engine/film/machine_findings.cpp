@@ -14,6 +14,7 @@
 #include "output/files/child_program.h"
 #include "output/files/exr_file.h"
 #include "output/run/run_folder.h"
+#include "render/font_search.h"
 #include "render/renderer.h"
 
 namespace supple {
@@ -67,13 +68,18 @@ Finding tool(const std::string& name, const char* option, bool needed, const cha
 }
 
 Finding font() {
-  const std::string file = caption_font();
-  return {"font",
-          !file.empty(),
-          false,
-          file.empty() ? "none of the known ones is installed" : file,
-          "captions in the pictures",
+  const std::string file = caption_font().file;
+  return {"font",      !file.empty(), false, file.empty() ? "none is installed" : file, "captions in the pictures",
           "fonts-lato"};
+}
+
+Finding scripts() {
+  return {"any script",
+          searches_fonts(),
+          false,
+          searches_fonts() ? "built in" : "the program was built without it",
+          "words in pictures in any script, and text.font",
+          "libfontconfig-dev and libraqm-dev"};
 }
 
 Finding surface_reader() {
@@ -175,6 +181,7 @@ std::vector<Finding> examine_machine() {
           tool("gnuplot", "--version", false, "plots in the reports of supple bench", "gnuplot-nox"),
           openexr(),
           font(),
+          scripts(),
           surface_reader(),
           scenes(),
           cache(),

@@ -89,7 +89,7 @@ RoughPass rough_pass(const FilmPlan& plan, const FilmSolvers& solvers, const Pas
 
 DrawnFilm drawn_pass(const RoughPass& pass) {
   const World& world = pass.film.world;
-  return {world.script(), world.bodies(), drawn_bodies(world.bodies(), {}, DrawnAs::elements), world.colliders(), ""};
+  return {world.script(), world.bodies(), drawn_bodies(world.bodies(), {}, DrawnAs::elements), world.colliders(), {}};
 }
 
 std::vector<FrameRow> rows_of(const RoughPass& pass, DrawnFilm& drawn) {

@@ -64,7 +64,7 @@ void PageEvents::tell_scene(const std::string& record) {
     if (name != name_of(FieldQuantity::distance)) fields.push_back(name);  // it needs another run
   const std::pair<const char*, Json> all[] = {{"title", scene.title.empty() ? scene.name : scene.title},
                                               {"scene", scene.name},
-                                              {"fps", scene.fps},
+                                              {"fps", static_cast<double>(scene.fps)},
                                               {"width", scene.output.width},
                                               {"height", scene.output.height},
                                               {"bodies", bodies},

@@ -21,7 +21,7 @@ bool is_free(const PixelRect& place, const std::vector<PixelRect>& taken, const 
 std::optional<PixelRect> place_of(const WantedCaption& caption, const CaptionRoom& room,
                                   const std::vector<PixelRect>& taken, CaptionReach reach) {
   constexpr double near_side = 0.5, near_rows = 0.7;  // over the caption's width and height
-  const int margin = std::max(2, height_for_letters(room.width, room.height) / 100);
+  const int margin = picture_margin(room.width, room.height);
   const double left = caption.edge.x() - 0.5 * caption.width;
   const bool above = caption.side == CaptionSide::above;
   const int first = static_cast<int>(std::lround(caption.edge.y())) - (above ? caption.height : 0);
@@ -40,6 +40,8 @@ std::optional<PixelRect> place_of(const WantedCaption& caption, const CaptionRoo
 }
 
 }  // namespace
+
+int picture_margin(int width, int height) { return std::max(2, height_for_letters(width, height) / 100); }
 
 // By the separating axis theorem: the axes are those of the rectangle and the normals of the outline's edges.
 bool overlaps(const PixelRect& rectangle, const Outline& outline) {

@@ -36,6 +36,9 @@ struct CaptionRoom {
   int width, height;
 };
 
+// Returns how far captions stay away from the edges of a picture [pixels].
+int picture_margin(int width, int height);
+
 // Returns a place for each caption: the first one from the wanted place away from the body, or a little to its sides,
 // that overlaps no other caption, nothing that is taken, and no body. Nothing when some caption has no such place in
 // the picture.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "render/caption.h"
@@ -17,14 +18,16 @@ bool same(const Camera& a, const Camera& b) { return a.eye == b.eye && a.target 
 
 }  // namespace
 
-Captions::Captions(const Stage& stage, std::vector<PixelRect> taken)
+Captions::Captions(const Stage& stage, std::vector<PixelRect> taken, const PixelRect& subtitles)
     : font_(stage.font),
       note_template_(stage.note_template),
       width_(stage.width),
       height_(stage.height),
+      gap_(0.012 * height_for_letters(stage.width, stage.height)),
       ink_(ink_on(stage)),
       around_(framed_at_start(stage)),
-      taken_(std::move(taken)) {
+      taken_(std::move(taken)),
+      subtitles_(subtitles) {
   if (stage.camera_moves) first_camera_ = stage.first_camera;
   for (const DrawMesh& mesh : stage.meshes) bodies_.push_back({mesh.label, mesh.rest, mesh.kept_clear, mesh.board});
 }
@@ -92,7 +95,6 @@ std::optional<double> Captions::try_size(const Camera& camera, int em, const Dem
   const int note_em = std::max(8, static_cast<int>(std::lround(note_size * em)));
   const int note_width = width_of(note_template_, note_em);
   const int height = line + 2 * halo + (note_template_.empty() ? 0 : draw_caption(font_, "X", note_em).height);
-  const double gap = 0.012 * height_for_letters(width_, height_);
   std::vector<WantedCaption> wanted;
   std::vector<Outline> bodies;
   placed_.clear();
@@ -104,8 +106,8 @@ std::optional<double> Captions::try_size(const Camera& camera, int em, const Dem
     if (!body.label.empty() && anchor) {
       const int width = std::max(width_of(body.label, em), note_width) + 2 * halo;
       const bool above = anchor->side == CaptionSide::above;
-      const double edge = above ? anchor->at.y() - gap
-                                : std::min(anchor->at.y() + gap, demand.over_bodies ? height_ - 2.0 * height : 1e9);
+      const double edge = above ? anchor->at.y() - gap_
+                                : std::min(anchor->at.y() + gap_, demand.over_bodies ? height_ - 2.0 * height : 1e9);
       wanted.push_back({{anchor->at.x(), edge}, width, height, anchor->side});
       placed_.push_back({m, {}});
     }
@@ -145,6 +147,29 @@ const std::vector<Captions::Placed>& Captions::places(const Camera& camera, cons
   return placed_;
 }
 
+// Looks for places that meet the first demand that can be met, in letters as large as can be. Returns whether there
+// are.
+bool Captions::find_places(const Camera& camera, const LetterSizes& sizes, std::span<const Demand> demands) {
+  const bool have_boards = std::ranges::any_of(bodies_, [](const Body& body) { return body.board.has_value(); });
+  bool done = false;
+  for (const Demand& demand : demands) {
+    if (done || (demand.boards && !have_boards)) continue;
+    // Where they cannot all be near, they grow as long as that moves each of them by less than a line.
+    std::optional<double> most;
+    if (demand.reach == CaptionReach::anywhere && !demand.over_bodies) {
+      most = try_size(camera, sizes.smallest, demand);
+      if (!most) continue;
+      *most += sizes.smallest * static_cast<double>(placed_.size());
+    }
+    for (int em = sizes.largest; em >= sizes.smallest && !done; em -= sizes.step) {
+      const std::optional<double> away = try_size(camera, em, demand);
+      done = away && (!most || *away <= *most);
+    }
+    if (!done && most) done = try_size(camera, sizes.smallest, demand).has_value();
+  }
+  return done;
+}
+
 void Captions::lay_out(const Camera& camera) {
   camera_ = camera;
   placed_.clear();
@@ -153,29 +178,20 @@ void Captions::lay_out(const Camera& camera) {
   const int height = height_for_letters(width_, height_);
   const int largest = std::max(9, static_cast<int>(std::lround(height / 32.0)));
   const int smallest = std::max(8, static_cast<int>(std::lround(height / 60.0)));
-  const int step = std::max(1, largest / 12);
-  const bool have_boards = std::ranges::any_of(bodies_, [](const Body& body) { return body.board.has_value(); });
-  bool done = false;
+  const LetterSizes sizes = {largest, smallest, std::max(1, largest / 12)};
   // Small letters beside their body say more than large ones that could belong to another.
-  for (const Demand& demand :
-       {Demand{CaptionReach::near, true, false}, Demand{CaptionReach::near, false, false},
-        Demand{CaptionReach::anywhere, true, false}, Demand{CaptionReach::anywhere, false, false},
-        Demand{CaptionReach::anywhere, false, true}}) {
-    if (done || (demand.boards && !have_boards)) continue;
-    // Where they cannot all be near, they grow as long as that moves each of them by less than a line.
-    std::optional<double> most;
-    if (demand.reach == CaptionReach::anywhere && !demand.over_bodies) {
-      most = try_size(camera, smallest, demand);
-      if (!most) continue;
-      *most += smallest * static_cast<double>(placed_.size());
-    }
-    for (int em = largest; em >= smallest && !done; em -= step) {
-      const std::optional<double> away = try_size(camera, em, demand);
-      done = away && (!most || *away <= *most);
-    }
-    if (!done && most) done = try_size(camera, smallest, demand).has_value();
+  constexpr std::array demands = {Demand{CaptionReach::near, true, false}, Demand{CaptionReach::near, false, false},
+                                  Demand{CaptionReach::anywhere, true, false},
+                                  Demand{CaptionReach::anywhere, false, false},
+                                  Demand{CaptionReach::anywhere, false, true}};
+  bool done = false;
+  if (subtitles_.width > 0) {
+    taken_.push_back(subtitles_);
+    done = find_places(camera, sizes, std::span(demands).first(2));
+    taken_.pop_back();
   }
-  if (!done) drop_unplaced(camera, smallest);
+  if (!done) done = find_places(camera, sizes, demands);
+  if (!done) drop_unplaced(camera, sizes.smallest);
   for (const Placed& one : placed_) {
     Sticker sticker(one.place.width, one.place.height);
     const std::string& label = bodies_[one.mesh].label;
@@ -185,33 +201,57 @@ void Captions::lay_out(const Camera& camera) {
   laid_out_ = placed_;
 }
 
-// Moves all captions as far as the feet of their bodies have moved in the picture. A caption of a body that has left
-// the picture goes with it; its place is then outside.
+namespace {
+
+// Returns the pixel where a box ends at its lower side in the picture, below its middle; nothing where part of it lies
+// behind the eye.
+std::optional<Eigen::Vector2d> end_of(const Projection& project, const Bounds& box) {
+  const auto middle = project({box.center().x(), box.lower.y(), box.center().z()});
+  const Outline outline = project.outline(box);
+  if (!middle || outline.empty()) return std::nullopt;
+  return Eigen::Vector2d(middle->x(), box_of({outline}).max().y());
+}
+
+}  // namespace
+
+// Moves all captions as far as the lower ends of their bodies' boxes have moved in the picture. The caption of the body
+// that the camera follows stays with it, wherever it goes, and so hardly moves in the picture. Those of other bodies
+// stay at the places on the ground where the bodies were at the start, as they do before a camera that stands still: a
+// box reaches down to the ground, and its caption is below all of it, so that the body comes to lie above its caption.
+// Only the lower edge of the picture may hold the caption up, as far as it did in the layout. A caption of a body that
+// has left the picture goes with it; its place is then outside.
 void Captions::go_along(const Camera& camera, const std::optional<Followed>& followed) {
   const Projection before(*first_camera_, around_, width_, height_), now(camera, around_, width_, height_);
   placed_ = laid_out_;
   for (Placed& one : placed_) {
-    Body body = bodies_[one.mesh];
-    const auto from = foot_of(before, body, body.rest.center().z());
+    Bounds at_start = bodies_[one.mesh].rest, there = at_start;
     if (followed && followed->mesh == one.mesh) {
-      // It moves along the ground with its body, and not up and down.
-      const Vec3 moved(followed->moved.x(), 0, followed->moved.z());
-      body.rest.lower += moved;
-      body.rest.upper += moved;
+      there = {at_start.lower + followed->moved, at_start.upper + followed->moved};
+    } else {
+      at_start.lower.y() = there.lower.y() = std::min(at_start.lower.y(), 0.0);
     }
-    const auto to = foot_of(now, body, body.rest.center().z());
-    const bool behind = !from || !to;
-    one.place.x = behind ? -2 * one.place.width : one.place.x + static_cast<int>(std::lround(to->x() - from->x()));
-    one.place.y = behind ? -2 * one.place.height : one.place.y + static_cast<int>(std::lround(to->y() - from->y()));
+    const auto from = end_of(before, at_start), to = end_of(now, there);
+    if (!from || !to) {
+      one.place.x = -2 * one.place.width;
+      one.place.y = -2 * one.place.height;
+      continue;
+    }
+    const Outline body = before.outline(bodies_[one.mesh].rest);
+    const bool below = !body.empty() && one.place.y > box_of({body}).center().y();
+    const double laid = one.place.y - from->y(), clear = below ? std::max(laid, gap_) : laid;
+    const double beyond = to->y() + clear + one.place.height - (height_ - picture_margin(width_, height_));
+    one.place.x += static_cast<int>(std::lround(to->x() - from->x()));
+    one.place.y = static_cast<int>(std::lround(to->y() + clear - std::clamp(beyond, 0.0, clear - laid)));
   }
 }
 
-void Captions::draw(Image& image, const DrawList& list) {
+void Captions::draw(Image& image, const DrawList& list, const PixelRect& subtitle) {
   places(list.camera, list.followed);
   const int note_em = std::max(8, static_cast<int>(std::lround(note_size * em_)));
   for (std::size_t i = 0; i < placed_.size(); ++i) {
     const PixelRect& place = placed_[i].place;
     if (place.right() < 0 || place.bottom() < 0 || place.x >= width_ || place.y >= height_) continue;
+    if (subtitle.width > 0 && place.overlaps(subtitle)) continue;
     stickers_[i].onto(image, place.x, place.y);
     if (placed_[i].mesh >= list.notes.size() || list.notes[placed_[i].mesh].empty()) continue;
     const std::string& text = list.notes[placed_[i].mesh];

@@ -2,10 +2,12 @@
 // stands where it stood at the start. The caption of a body on a collider of its own, called its board here, is read as
 // that of both and stands beside both: below them, or above them where the board leads the body down in the picture.
 // Where there is little room, all captions become smaller together. A camera that moves changes nothing of this layout
-// but where the bodies are: captions keep their distance from them and do not jump. Not here: the words (a mesh's label
+// but where the bodies are: captions keep their distance from them and do not jump, and that of a body which the camera
+// follows stays where it is in the picture. Not here: the words (a mesh's label
 // is BodyDef::label, notes are from film/pictures/picture_words.h), and the search for free places (caption_layout.h).
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,7 +20,8 @@ namespace supple {
 class Captions {
  public:
   // There are no captions when the stage has no font. taken: places of other things that are laid over the picture.
-  explicit Captions(const Stage& stage, std::vector<PixelRect> taken = {});
+  // subtitles: the room of all subtitles, of which captions keep clear where they still stand close by their bodies.
+  explicit Captions(const Stage& stage, std::vector<PixelRect> taken = {}, const PixelRect& subtitles = {});
 
   // Replaces the caption of a mesh.
   void renew(std::size_t mesh, const std::string& label);
@@ -35,8 +38,9 @@ class Captions {
   // Tells whether a caption stands in front of a body where there is no other room; `placed` counts in places().
   bool over_a_body(std::size_t placed) const { return over_body_[placed]; }
 
-  // Draws the captions and, below each, the list's note on its mesh.
-  void draw(Image& image, const DrawList& list);
+  // Draws the captions and, below each, the list's note on its mesh. Those that the picture's subtitle would cover are
+  // left out. subtitle: its place; without size where there is none.
+  void draw(Image& image, const DrawList& list, const PixelRect& subtitle = {});
 
  private:
   struct Body {
@@ -60,16 +64,24 @@ class Captions {
   std::optional<Anchor> beside_board(const Projection& project, const Body& body) const;
   std::optional<Anchor> anchor_of(const Projection& project, const Body& body, bool boards) const;
   std::optional<double> try_size(const Camera& camera, int em, const Demand& demand);
+  // Gives the heights of letters that are tried, from the largest down [pixels].
+  struct LetterSizes {
+    int largest, smallest, step;
+  };
+  bool find_places(const Camera& camera, const LetterSizes& sizes, std::span<const Demand> demands);
   void lay_out(const Camera& camera);
   void go_along(const Camera& camera, const std::optional<Followed>& followed);
   void drop_unplaced(const Camera& camera, int em);
   int width_of(const std::string& text, int em) const;
 
-  std::string font_, note_template_;
+  Font font_;
+  std::string note_template_;
   int width_, height_;
-  Vec3 ink_;  // of the letters [sRGB]
+  double gap_;  // between a body and its caption [pixels]
+  Vec3 ink_;    // of the letters [sRGB]
   Bounds around_;
   std::vector<PixelRect> taken_;
+  PixelRect subtitles_;
   std::vector<Body> bodies_;               // by mesh of the stage
   std::vector<Placed> placed_, laid_out_;  // in the picture in hand; in that of the camera of the layout
   std::optional<Camera> first_camera_;     // of the layout, where the camera moves

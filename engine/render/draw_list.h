@@ -12,6 +12,7 @@
 
 #include "base/texture.h"
 #include "base/types.h"
+#include "render/font.h"
 #include "render/light_rig.h"
 
 namespace supple {
@@ -127,11 +128,12 @@ struct Stage {
   int samples = 4;                 // samples a pixel, for antialiasing
   StageColors colors;
   LightRig light = studio_light();
-  std::string font;                // font file; no captions when empty
-  std::optional<FieldLook> field;  // that meshes show
-  double kept_free = 0;            // of the width at each side, where framing cameras show no body: for the legend
-  std::string note_template;       // a note as long as any below a caption; there are none when empty
-  std::string headline_template;   // a line as long as any at the top of the picture; there is none when empty
+  Font font;                           // of all words; no captions when empty
+  std::optional<FieldLook> field;      // that meshes show
+  double kept_free = 0;                // of the width at each side, where framing cameras show no body: for the legend
+  std::string note_template;           // a note as long as any below a caption; there are none when empty
+  std::string headline_template;       // a line as long as any at the top of the picture; there is none when empty
+  std::vector<std::string> subtitles;  // all that stand at the lower edge in some picture
   std::vector<GraphLook> graphs;
   Camera first_camera;        // at the start of the film; graphs keep clear of what it shows
   bool camera_moves = false;  // over the film
@@ -167,6 +169,7 @@ struct DrawList {
   std::vector<std::array<float, 4>> marks;                    // x y z [m], and 0 for a handle or 1 for a contact
   std::optional<StageColors> colors;                          // that replace the stage's from now on
   std::string headline;                                       // at the top of the picture, in this frame
+  std::string subtitle;                                       // at its lower edge, in this frame; one of the stage's
   std::vector<GraphCurve> graphs;                             // the curves of the stage's graphs up to this frame
   std::optional<Exposure> exposure;                           // nothing: the picture is that of an instant, all sharp
 };

@@ -17,7 +17,7 @@ struct LegendLayout {
   int bar_top() const { return pad + 2 * line; }
 };
 
-LegendLayout layout_of(const FieldLook& field, const std::string& font, int picture_height) {
+LegendLayout layout_of(const FieldLook& field, const Font& font, int picture_height) {
   LegendLayout layout{};
   layout.em = std::max(9, static_cast<int>(std::lround(picture_height / 36.0)));
   const CaptionBitmap title = draw_caption(font, field.title, layout.em);
@@ -34,7 +34,7 @@ LegendLayout layout_of(const FieldLook& field, const std::string& font, int pict
 
 }  // namespace
 
-Sticker legend_of(const FieldLook& field, const std::string& font, int width, int height) {
+Sticker legend_of(const FieldLook& field, const Font& font, int width, int height) {
   if (field.title.empty() || font.empty()) return {};
   const LegendLayout layout = layout_of(field, font, std::min(height, width * 3 / 4));
   Sticker legend(layout.width, layout.height);

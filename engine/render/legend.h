@@ -8,7 +8,7 @@ namespace supple {
 
 // Makes the legend for a picture of this size [pixels]; it is empty when the field has no title or there is no font. It
 // stands beside the bodies, so that a narrow picture has a small one.
-Sticker legend_of(const FieldLook& field, const std::string& font, int width, int height);
+Sticker legend_of(const FieldLook& field, const Font& font, int width, int height);
 
 // Returns how far a legend stays away from the picture's edges [pixels].
 int legend_margin(const Stage& stage);

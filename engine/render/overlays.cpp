@@ -7,6 +7,7 @@
 #include "render/graphs.h"
 #include "render/legend.h"
 #include "render/projection.h"
+#include "render/subtitles.h"
 
 namespace supple {
 namespace {
@@ -54,9 +55,10 @@ double area_in_box(const PixelRect& rectangle, const Outline& outline) {
 std::vector<PixelRect> graph_places(const Stage& stage, const OverlayPlaces& others) {
   const std::vector<PixelRect> sizes = graph_sizes(stage);
   if (sizes.empty()) return {};
-  const std::vector<PixelRect> taken = others.all();
+  std::vector<PixelRect> taken = others.all();
+  if (others.subtitles.width > 0) taken.push_back(others.subtitles);
   const std::vector<Outline> bodies = bodies_of(stage);
-  Captions captions(stage, taken);
+  Captions captions(stage, others.all(), others.subtitles);
   const std::vector<Captions::Placed> placed = captions.places(stage.first_camera);
   const int margin = overlay_margin(stage), below = std::max(margin, others.headline.bottom() + margin / 2);
   const std::vector<std::vector<PixelRect>> corners = {
@@ -108,6 +110,7 @@ OverlayPlaces overlay_places(const Stage& stage) {
     const int x = stage.width - legend_margin(stage) - legend.width(), y = (stage.height - legend.height()) / 2;
     if (legend.width() > 0) places.legend = {x, y, legend.width(), legend.height()};
   }
+  places.subtitles = Subtitles(stage).room();
   places.graphs = graph_places(stage, places);
   return places;
 }

@@ -1,5 +1,5 @@
-// Finds where the things stand that have one place in all pictures of a film: the line at the top, the legend of a
-// field, and graphs. None lies over another one.
+// Finds where the things stand that have one place in all pictures of a film: the line at the top, subtitles, the
+// legend of a field, and graphs. None lies over another one.
 #pragma once
 
 #include <vector>
@@ -9,10 +9,10 @@
 namespace supple {
 
 struct OverlayPlaces {
-  PixelRect headline, legend;     // without size where there is none
-  std::vector<PixelRect> graphs;  // of the stage's graphs; empty where there are none, or no room for them
+  PixelRect headline, legend, subtitles;  // without size where there is none
+  std::vector<PixelRect> graphs;          // of the stage's graphs; empty where there are none, or no room for them
 
-  // Returns the places of all of them.
+  // Returns the places of all of them but the subtitles, which come and go.
   std::vector<PixelRect> all() const;
 };
 

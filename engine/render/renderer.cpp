@@ -71,8 +71,9 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
   prepare_field();
   make_surfaces();
   overlays_ = overlay_places(stage_);
-  captions_ = std::make_unique<Captions>(stage_, overlays_.all());
+  captions_ = std::make_unique<Captions>(stage_, overlays_.all(), overlays_.subtitles);
   graphs_ = std::make_unique<Graphs>(stage_, overlays_.graphs);
+  subtitles_ = std::make_unique<Subtitles>(stage_);
   check_gl(gl_, "preparing the stage");
 }
 
@@ -323,9 +324,10 @@ void Renderer::read_coverage(Image& image) const {
 }
 
 void Renderer::draw_overlays(const DrawList& list, Image& image) {
-  captions_->draw(image, list);
+  captions_->draw(image, list, subtitles_->show(list.subtitle));
   legend_.onto(image, overlays_.legend.x, overlays_.legend.y);
   graphs_->draw(image, list.graphs);
+  subtitles_->draw(image);
   if (list.headline.empty() || stage_.font.empty()) return;
   const Sticker headline = headline_of(stage_, list.headline);
   headline.onto(image, overlays_.headline.x, overlays_.headline.y);

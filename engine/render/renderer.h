@@ -22,6 +22,7 @@
 #include "render/program.h"
 #include "render/shadow_map.h"
 #include "render/stage_cover.h"
+#include "render/subtitles.h"
 #include "render/surface_buffers.h"
 #include "render/texture_buffer.h"
 #include "render/tile_buffer.h"
@@ -86,6 +87,7 @@ class Renderer {
   OverlayPlaces overlays_;
   std::unique_ptr<Captions> captions_;
   std::unique_ptr<Graphs> graphs_;
+  std::unique_ptr<Subtitles> subtitles_;
   std::unique_ptr<Marks> marks_;  // once there is one to draw
   std::unique_ptr<TileBuffer> tile_buffer_;
   GLuint color_buffer_ = 0, color_texture_ = 0;  // colours of the field; none without a field

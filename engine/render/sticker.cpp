@@ -39,7 +39,7 @@ void Sticker::plate(const PixelRect& area, double radius, const Vec3& color, dou
   }
 }
 
-void Sticker::text(const std::string& font, const std::string& text, int pixels, int x, int y, const Vec3& color) {
+void Sticker::text(const Font& font, const std::string& text, int pixels, int x, int y, const Vec3& color) {
   const CaptionBitmap bitmap = draw_caption(font, text, pixels);
   for (int row = 0; row < bitmap.height; ++row) {
     for (int column = 0; column < bitmap.width; ++column)
@@ -47,8 +47,7 @@ void Sticker::text(const std::string& font, const std::string& text, int pixels,
   }
 }
 
-void Sticker::text_with_halo(const std::string& font, const std::string& text, int pixels, int x, int y,
-                             const Vec3& color) {
+void Sticker::text_with_halo(const Font& font, const std::string& text, int pixels, int x, int y, const Vec3& color) {
   const CaptionBitmap bitmap = draw_caption(font, text, pixels);
   const Vec3 around = color.mean() < 0.5 ? Vec3(0.97, 0.97, 0.96) : Vec3(0.06, 0.06, 0.07);
   const int reach = halo(pixels);

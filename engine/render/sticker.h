@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/draw_list.h"
+#include "render/font.h"
 
 namespace supple {
 
@@ -40,11 +41,11 @@ class Sticker {
   // Fills with rounded corners of this radius [pixels].
   void plate(const PixelRect& area, double radius, const Vec3& color, double opacity);
   // Writes text whose box has its upper left corner at (x, y). pixels: the height of the font's em.
-  void text(const std::string& font, const std::string& text, int pixels, int x, int y, const Vec3& color);
+  void text(const Font& font, const std::string& text, int pixels, int x, int y, const Vec3& color);
 
   // Does the same with a halo around the letters, so that they can be read on any background: a light one around dark
   // letters, a dark one around light letters. The halo reaches halo(pixels) beyond the box.
-  void text_with_halo(const std::string& font, const std::string& text, int pixels, int x, int y, const Vec3& color);
+  void text_with_halo(const Font& font, const std::string& text, int pixels, int x, int y, const Vec3& color);
   static int halo(int pixels) { return pixels / 8 > 1 ? pixels / 8 : 1; }
 
   // Lays itself over a picture; what lies outside the picture is left out.

@@ -100,7 +100,7 @@ std::vector<std::string> picture_settings(const py::object& camera, const py::ob
 class FilmFace {
  public:
   FilmFace(const py::object& path, double fps) : path_(path_of(path)), fps_(fps) {
-    if (!(fps > 0)) throw InputError("fps", "must be above 0");
+    if (!(fps >= 0.001 && fps <= 1e6)) throw InputError("fps", "must be from 0.001 to 1000000");
     const std::string ending = path_.extension().string();
     const auto format = value_named<FilmFormat>(ending.empty() ? "" : ending.substr(1));
     if (!format || *format == FilmFormat::png) throw InputError(path_.string(), "a film ends in .mp4, .webm, .mov or .gif");

@@ -170,6 +170,52 @@ TEST_F(FilmOfABar, KeepsItsSpeedAsAGif) {
   }
 }
 
+TEST_F(FilmOfABar, HasItsRateAsAFraction) {
+  const auto rate_of = [](const std::filesystem::path& file) {
+    const auto told = run_program({"ffprobe", "-v", "error", "-select_streams", "v:0", "-show_entries",
+                                   "stream=r_frame_rate,avg_frame_rate,duration_ts,time_base", "-of",
+                                   "default=noprint_wrappers=1", file.string()});
+    return told ? told->output : "";
+  };
+  for (const auto& [fps, rate] :
+       {std::pair{"30000/1001", "30000/1001"}, {"23.976", "24000/1001"}, {"24", "24/1"}, {"12.5", "25/2"}}) {
+    const Result result = film("out", {"--force", "--set", std::string("fps=") + fps, "--page"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const std::string told = rate_of(video("out"));
+    EXPECT_NE(told.find(std::string("r_frame_rate=") + rate), std::string::npos) << told;
+    EXPECT_NE(told.find(std::string("avg_frame_rate=") + rate), std::string::npos) << told;
+    EXPECT_EQ(count_video_frames(video("out")), 12);
+  }
+  ASSERT_EQ(film("tv", {"--set", "fps=30000/1001"}).status, 0);
+  const auto profile = nlohmann::json::parse(read_file(folder_.path / "tv" / "profile.json"));
+  EXPECT_EQ(profile["frames"][11]["time_s"].get<double>(), 12 * 1001 / 30000.0);
+  EXPECT_EQ(film("out", {"--set", "fps=30000/0"}).status, 2);
+  const Result drawn = run(folder_.path, {"draw", "tv", "--rate", "60000/1001", "--quiet", "--out", "fast"});
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_NE(rate_of(video("fast")).find("r_frame_rate=60000/1001"), std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(read_file(folder_.path / "fast" / "draw.json"))["rate"], "60000/1001");
+  const Result wrong = run(folder_.path, {"draw", "tv", "--rate", "60000/x"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_EQ(wrong.err,
+            "--rate 60000/x: must be a number such as 25 or 23.976, or a fraction of two whole numbers such as "
+            "30000/1001, from 0.01 to 1000\n");
+}
+
+// Ten minutes of television's rate have a frame for each 1001/30000 s, and the film's file as well.
+TEST_F(FilmOfABar, DoesNotDriftInTenMinutes) {
+  const FrameRate rate = *FrameRate::parse("30000/1001");
+  const std::filesystem::path file = folder_.path / "long.mp4";
+  VideoEncoder encoder(file, 16, 16, rate, {FilmFormat::mp4, FilmQuality::draft});
+  const int frames = 17982;
+  const std::vector<std::uint8_t> grey(16 * 16 * 3, 128);
+  for (int frame = 0; frame < frames; ++frame) ASSERT_TRUE(encoder.add(grey));
+  ASSERT_EQ(encoder.finish().outcome, VideoOutcome::written);
+  const auto told = run_program({"ffprobe", "-v", "error", "-select_streams", "v:0", "-show_entries", "stream=duration",
+                                 "-of", "csv=p=0", file.string()});
+  ASSERT_TRUE(told);
+  EXPECT_NEAR(std::stod(told->output), rate.time_of(frames), 1e-6);
+}
+
 TEST_F(FilmOfABar, SaysWhatItsFormatCannotHold) {
   const auto warned = [&](const std::string& format, const std::vector<std::string>& settings) {
     std::vector<std::string> words = {"--force", "--frames", "2", "--format", format};

@@ -260,7 +260,7 @@ TEST(Doctor, SaysWhatThereIsAndWhatIsMissing) {
   }
   EXPECT_EQ(ready, told["ready"].get<bool>());
   EXPECT_EQ(names, (std::set<std::string>{"processor", "cores", "OpenGL", "ffmpeg", "ffprobe", "gnuplot", "OpenEXR",
-                                          "font", "surface reader", "scenes", "cache", "disk"}));
+                                          "font", "any script", "surface reader", "scenes", "cache", "disk"}));
 }
 
 TEST(Doctor, MissesWhatIsNotInPath) {

@@ -315,7 +315,7 @@ TEST(ContactSheet, ShowsPicturesInOrderAndSaysWhatIsMissing) {
   const test::TemporaryFolder folder;
   const std::vector<std::uint8_t> black(300 * 200 * 3, 0);
   write_png(folder.path / "dark.png", 300, 200, black);
-  Sheet sheet{"", {}, 2, ""};
+  Sheet sheet{"", {}, 2, {}};
   sheet.pictures = {{folder.path / "dark.png"}, {"", "failed"}, {folder.path / "dark.png"}};
   const PngImage image = compose(sheet);
   std::size_t dark = 0, grey = 0;

@@ -75,7 +75,7 @@ class Browser:
         if text is not None:
             keys["text"] = text
         codes = {"Tab": 9, "Enter": 13, "Escape": 27, " ": 32, "ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39,
-                 "ArrowDown": 40, "Home": 36}
+                 "ArrowDown": 40, "Home": 36, "End": 35}
         keys["windowsVirtualKeyCode"] = codes.get(key, ord(key.upper()) if len(key) == 1 else 0)
         self.ask("Input.dispatchKeyEvent", type="keyDown", **keys)
         self.ask("Input.dispatchKeyEvent", type="keyUp", **keys)

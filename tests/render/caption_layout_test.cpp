@@ -194,6 +194,57 @@ TEST(Captions, KeepToTheirBodyWhereTheColliderLeavesThePicture) {
   EXPECT_EQ(with.captions[0].place.y, without.captions[0].place.y);
 }
 
+// Returns a camera that has turned around its target.
+Camera turned(const Camera& camera, double degrees) {
+  Camera result = camera;
+  const Eigen::AngleAxisd turn(degrees * M_PI / 180, Vec3::UnitY());
+  result.eye = camera.target + turn * (camera.eye - camera.target);
+  return result;
+}
+
+Camera moved_by(Camera camera, const Vec3& way) {
+  camera.eye += way;
+  camera.target += way;
+  return camera;
+}
+
+TEST(Captions, OfTheBodyThatTheCameraFollowsStayInThePicture) {
+  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  for (const char* size : {"[output]\nwidth = 640\nheight = 360\n", "[output]\nwidth = 1080\nheight = 1920\n"}) {
+    LaidOut picture = laid_out(cube_at(1.5, size));
+    picture.stage.camera_moves = true;
+    Captions captions(picture.stage);
+    const PixelRect first = captions.places(picture.stage.first_camera, Followed{0, Vec3::Zero()}).at(0).place;
+    for (const Vec3& way : {Vec3(0, -1.5, 0), Vec3(3, -1, -2), Vec3(0, 4, 0)}) {
+      const Camera camera = moved_by(picture.stage.first_camera, way);
+      const PixelRect place = captions.places(camera, Followed{0, way}).at(0).place;
+      EXPECT_LE(std::abs(place.x - first.x), 1) << way.transpose();
+      EXPECT_LE(std::abs(place.y - first.y), 1) << way.transpose();
+    }
+  }
+}
+
+// A body falls to the ground, where its caption waits for it, whichever way the camera goes meanwhile.
+TEST(Captions, KeepClearOfAFallenBodyWhereTheCameraMoves) {
+  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  LaidOut picture = laid_out(cube_at(1.5, ""));
+  picture.stage.camera_moves = true;
+  Bounds fallen = picture.stage.meshes[0].rest;
+  fallen.lower.y() -= 1.5;
+  fallen.upper.y() -= 1.5;
+  std::vector<Camera> cameras;
+  for (int degrees = 0; degrees < 360; degrees += 15) cameras.push_back(turned(picture.stage.first_camera, degrees));
+  for (const double down : {0.5, 1.0}) cameras.push_back(moved_by(picture.stage.first_camera, Vec3(0, -down, 0)));
+  Captions captions(picture.stage);
+  for (const Camera& camera : cameras) {
+    const PixelRect place = captions.places(camera).at(0).place;
+    const Outline outline =
+        Projection(camera, framed_at_start(picture.stage), picture.stage.width, picture.stage.height).outline(fallen);
+    EXPECT_FALSE(overlaps(place, outline)) << camera.eye.transpose();
+    EXPECT_LT(place.y - Ends(outline).bottom, 3 * place.height) << "it is far from its body";
+  }
+}
+
 class CaptionsOfScene : public testing::TestWithParam<std::string> {};
 
 // Neither skins nor models are needed: captions keep clear of the bodies' boxes at the start.
@@ -234,7 +285,7 @@ void expect_apart(const std::vector<PixelRect>& texts, const Size& size) {
 
 // Graphs find a place beside all other texts that can be switched on, and cost no body its caption.
 TEST_P(CaptionsOfScene, LeaveAllOtherTextsFree) {
-  const std::string font = caption_font();
+  const Font font = caption_font();
   if (font.empty()) GTEST_SKIP() << "no font is installed";
   for (const Size size : {Size{640, 360}, Size{1280, 720}, Size{3840, 2160}, Size{1080, 1920}}) {
     for (const bool notes : {false, true}) {
@@ -253,6 +304,7 @@ TEST_P(CaptionsOfScene, LeaveAllOtherTextsFree) {
       stage.first_camera = camera_at(scene, stage, 0);
       stage.graphs = graph_looks(scene, 888);
       const OverlayPlaces overlays = overlay_places(stage);
+      EXPECT_EQ(overlays.subtitles.width, 0) << "a film without subtitles keeps no room for them";
       EXPECT_EQ(overlays.graphs.size(), 2u) << "there is no room for the graphs at " << size.width;
       std::vector<PixelRect> texts = overlays.all();
       EXPECT_EQ(texts.size(), 4u);
@@ -263,6 +315,36 @@ TEST_P(CaptionsOfScene, LeaveAllOtherTextsFree) {
       EXPECT_EQ(texts.size() - 4, captioned) << "the graphs took the place of a caption at " << size.width;
       expect_apart(texts, size);
     }
+  }
+}
+
+// Captions keep clear of subtitles where they can stay beside their bodies; elsewhere they are where they would be
+// without, and those that a subtitle covers are not drawn below it.
+TEST_P(CaptionsOfScene, LeaveSubtitlesTheirPlace) {
+  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  for (const Size size : {Size{640, 360}, Size{1920, 1080}, Size{1080, 1920}}) {
+    LaidOut picture = laid_out(shipped_at(GetParam(), size));
+    picture.stage.subtitles = {"What is said here has a line of usual length"};
+    const OverlayPlaces overlays = overlay_places(picture.stage);
+    ASSERT_GT(overlays.subtitles.width, 0);
+    Captions captions(picture.stage, overlays.all(), overlays.subtitles);
+    const std::vector<Captions::Placed> placed = captions.places(picture.stage.first_camera);
+    ASSERT_EQ(placed.size(), picture.captions.size()) << "a caption was left out at " << size.width;
+    bool clear = true, as_without = true;
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      const PixelRect &place = placed[i].place, &without = picture.captions[i].place;
+      clear &= !place.overlaps(overlays.subtitles);
+      as_without &= place.x == without.x && place.y == without.y && place.height == without.height;
+    }
+    EXPECT_TRUE(clear || as_without) << size.width;
+    const std::size_t pixels = std::size_t(size.width) * std::size_t(size.height);
+    Image image{size.width, size.height, std::vector<std::uint8_t>(3 * pixels, 128)}, covered = image;
+    DrawList list;
+    list.camera = picture.stage.first_camera;
+    captions.draw(image, list);
+    captions.draw(covered, list, {0, 0, size.width, size.height});
+    EXPECT_EQ(std::ranges::any_of(image.rgb, [](int value) { return value != 128; }), !placed.empty());
+    EXPECT_TRUE(std::ranges::all_of(covered.rgb, [](int value) { return value == 128; }));
   }
 }
 

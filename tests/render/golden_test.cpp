@@ -19,6 +19,7 @@
 #include "output/files/png_file.h"
 #include "output/motion/point_cache.h"
 #include "output/run/run_folder.h"
+#include "render/font_search.h"
 #include "render/renderer.h"
 #include "sim/measures/fields.h"
 #include "support/colored_files.h"
@@ -46,7 +47,7 @@ struct Shot {
   std::filesystem::path scene;
   Settings settings = {};
   int frames = 0;                   // that pass before the picture is taken
-  std::string font = {};            // a file; without it there are no captions
+  std::string font = {};            // a file; without it there are no words
   std::vector<FrameRow> rows = {};  // of the run's profile, the last one being the picture's
   Bounds motion = {};               // of the whole film, for cameras that frame it
 };
@@ -74,7 +75,7 @@ Picture picture_of(const Shot& shot, const Settings& more = {}) {
   const test::Film film(shot.scene, settings);
   const Script script = Script::load(shot.scene, test::assets, settings);
   const DrawnAs surface = film.scene.look.wireframe ? DrawnAs::elements : DrawnAs::skin;
-  DrawnFilm drawn(script, film.bodies, drawn_bodies(film.bodies, {}, surface), film.set, shot.font);
+  DrawnFilm drawn(script, film.bodies, drawn_bodies(film.bodies, {}, surface), film.set, Font{shot.font, 0});
   drawn.know_times(shot.rows);
   std::vector<Positions> motion, before, forces(film.bodies.size());
   for (const Body& body : film.bodies) motion.push_back(first_positions(body));
@@ -86,7 +87,7 @@ Picture picture_of(const Shot& shot, const Settings& more = {}) {
               forces[b] = contact_forces(film.models[b], w, to.x);
             });
   if (film.scene.camera.frames == Framed::film) drawn.frame_motion(corners_of(shot.motion));
-  FramePose pose{shot.frames - 1, shot.frames / film.scene.fps, {}, {}};
+  FramePose pose{shot.frames - 1, film.scene.fps.time_of(shot.frames), {}, {}};
   for (const Positions& body : motion) pose.motion.push_back(&body);
   for (const Positions& body : before) pose.before.push_back(&body);
   for (const Positions& body : forces) pose.forces.push_back(&body);
@@ -372,6 +373,41 @@ TEST(Golden, WordsTellOfTheFilmAndItsBodies) {
                 {{{"text.title=false", "text.time=false"}, {}, true}, {{"text.method=false"}, {}, true}});
 }
 
+// A subtitle is read on a white picture as on a dark one, wide or narrow.
+TEST(Golden, SubtitlesStandAtTheLowerEdge) {
+  if (!std::filesystem::exists(lato)) GTEST_SKIP() << lato << " is not installed";
+  const std::string subtitles =
+      "text.subtitles=[{ from = 0, to = 1, text = 'A line that is so long that each of the pictures breaks it' }]";
+  const Removal without = {{"text.subtitles=[]"}};
+  expect_golden(
+      "subtitles",
+      {written_for_tests("captions"), {subtitles, "look.ground=[1, 1, 1]", "look.background=[1, 1, 1]"}, 1, lato},
+      {without});
+  expect_golden("subtitles-narrow",
+                {written_for_tests("captions"),
+                 {subtitles, "output.width=180", "output.height=320", "look.light=dark", "look.ground=[0.1, 0.1, 0.1]",
+                  "look.background=[0.1, 0.1, 0.1]"},
+                 1,
+                 lato},
+                {without});
+}
+
+// Greek comes from the font itself, Hebrew and Arabic from another one.
+TEST(Golden, WordsMayBeInAnyScript) {
+  const auto other = font_with(U'\u0633');
+  if (!std::filesystem::exists(lato) || !other || !other->file.ends_with("DejaVuSans.ttf") ||
+      font_with(U'\u05e9') != other)
+    GTEST_SKIP() << "the stored picture has letters of Lato and DejaVu Sans";
+  expect_golden("scripts",
+                {written_for_tests("captions"),
+                 {"body.a.label='\u0395\u03bb\u03bb\u03b7\u03bd\u03b9\u03ba\u03ac'",
+                  "body.b.label='\u05e9\u05dc\u05d5\u05dd 40 kPa'",
+                  "body.c.label='\u0645\u0637\u0627\u0637 \u0646\u0627\u0639\u0645'"},
+                 0,
+                 lato},
+                {{{"look.labels=false"}}, {{"body.c.label=''"}, {}, true}});
+}
+
 TEST(Golden, SmallGraphsStandInACorner) {
   if (!std::filesystem::exists(lato)) GTEST_SKIP() << lato << " is not installed";
   std::vector<FrameRow> rows(25);
@@ -421,7 +457,7 @@ TEST(Golden, PanelsStandInEveryLayoutWithTheLegendBesideThem) {
   const test::TemporaryFolder folder;
   Picture picture = picture_of(
       {written_for_tests("field"), {"field.quantity=stretch", "output.width=160", "output.height=120"}, 0, lato});
-  SplitScreen screen{{}, 1, lato, picture.stage.field};
+  SplitScreen screen{{}, 1, {lato, 0}, picture.stage.field};
   picture.stage.field->title.clear();
   const Image panel = draw(picture);
   FrameRow row;

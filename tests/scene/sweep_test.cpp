@@ -169,7 +169,7 @@ TEST_F(Sweep, VariesTheSceneThatAReplayStartsWith) {
   const SweepDef sweep = load_sweep(replay, test::assets, {});
   ASSERT_EQ(sweep.points(), 2u);
   const Script second = Script::load(replay, test::assets, {}, 1);
-  EXPECT_EQ(second.scene().fps, 20);
+  EXPECT_EQ(second.scene().fps, FrameRate(20));
   EXPECT_EQ(second.scene().title, "turned");
   EXPECT_EQ(second.changes().size(), 1u);
   const std::string before = sweep_point_json(replay, test::assets, {}, sweep, 1);

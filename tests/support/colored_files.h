@@ -13,7 +13,7 @@
 
 #include "output/files/png_file.h"
 #include "support/surfaces.h"
-#include "support/written_text.h"
+#include "support/text_file.h"
 
 namespace supple::test {
 

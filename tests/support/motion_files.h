@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "geometry/meshes/mesh.h"
-#include "support/written_text.h"
+#include "support/text_file.h"
 
 namespace supple::test {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "output/files/png_file.h"
+#include "render/font.h"
 
 namespace supple {
 
@@ -20,7 +21,7 @@ struct Sheet {
   std::string title;
   std::vector<SheetPicture> pictures;  // row by row
   int columns = 1;
-  std::string font;  // a file; empty: no words
+  Font font;  // empty: no words
 };
 
 // Composes the sheet. Pictures keep their shape and are made smaller, never larger. Throws InputError where a picture

@@ -140,7 +140,7 @@ LightRig rig_of(LightKind kind) {
 }  // namespace
 
 Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const std::vector<DrawnBody>& drawn,
-                 const std::vector<SceneCollider>& colliders, const std::vector<Skin>& skins, const std::string& font) {
+                 const std::vector<SceneCollider>& colliders, const std::vector<Skin>& skins, const Font& font) {
   Stage stage;
   stage.width = scene.output.width;
   stage.height = scene.output.height;
@@ -150,6 +150,7 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
   stage.font = font;
   stage.note_template = longest_note(scene);
   stage.headline_template = longest_headline(scene);
+  stage.subtitles = all_subtitles(scene.text);
   if (scene.look.backdrop == BackdropKind::plain) stage.backdrop = Backdrop::plain;
   if (scene.look.backdrop == BackdropKind::transparent) stage.backdrop = Backdrop::transparent;
   if (scene.look.backdrop == BackdropKind::shadows) stage.backdrop = Backdrop::shadows;

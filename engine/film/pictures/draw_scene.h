@@ -22,7 +22,7 @@ StageColors colors_of(const LookDef& look);
 
 // Builds the stage of a film: first the bodies, then the colliders.
 Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const std::vector<DrawnBody>& drawn,
-                 const std::vector<SceneCollider>& colliders, const std::vector<Skin>& skins, const std::string& font);
+                 const std::vector<SceneCollider>& colliders, const std::vector<Skin>& skins, const Font& font);
 
 // Adds the positions of the colliders at a time to a list that already holds those of the bodies.
 void add_colliders(const std::vector<SceneCollider>& colliders, const std::vector<Skin>& skins, double time,

@@ -52,7 +52,7 @@ std::vector<Camera> cameras_of(const Script& script, const Stage& stage) {
 }  // namespace
 
 DrawnFilm::DrawnFilm(const Script& script, const std::vector<Body>& bodies, std::vector<DrawnBody> drawn,
-                     const CollisionSet& set, const std::string& font)
+                     const CollisionSet& set, const Font& font)
     : bodies_(bodies), start_(script.scene()), drawn_(std::move(drawn)) {
   const SceneDef& scene = start_;
   collider_skins_ = collider_skins(set.scene_colliders, bodies);
@@ -213,6 +213,7 @@ DrawList DrawnFilm::list(const SceneDef& scene, const FramePose& pose, const Col
   for (std::size_t b = 0; b < bodies && scene.look.marks; ++b)
     append_marks(bodies_[b], *pose.motion[b], set, pose.time, &threads, result.marks);
   result.headline = headline_text(scene, pose.time);
+  result.subtitle = subtitle_text(scene.text, pose.time);
   result.graphs = graph_curves(scene.text, pose.earlier, pose.row, longest_steps_);
   for (std::size_t b = 0; b < bodies && scene.text.notes(); ++b) {
     const BodyRow* row = pose.row != nullptr && b < pose.row->bodies.size() ? &pose.row->bodies[b] : nullptr;

@@ -20,7 +20,7 @@ class DrawnFilm {
   // The script tells all cameras of the film, to which the skins' resolution is fitted. The bodies must outlive the
   // film. drawn: the drawn mesh of each body.
   DrawnFilm(const Script& script, const std::vector<Body>& bodies, std::vector<DrawnBody> drawn,
-            const CollisionSet& set, const std::string& font);
+            const CollisionSet& set, const Font& font);
 
   const Stage& stage() const { return stage_; }
 

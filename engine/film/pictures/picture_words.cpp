@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <vector>
 
 #include "render/caption.h"
+#include "render/code_points.h"
+#include "render/font_search.h"
 
 namespace supple {
 namespace {
@@ -22,6 +23,8 @@ void add_words(const SceneDef& scene, std::vector<ShownWords>& list) {
   list.push_back({scene.title, "the title", {"title"}});
   for (const BodyDef& body : scene.bodies)
     if (scene.look.show_labels) list.push_back({body.label, fmt::format("the caption of '{}'", body.name), body.place});
+  for (const Subtitle& one : scene.text.subtitles)
+    list.push_back({one.text, fmt::format("the subtitle at {:g} s", one.from), one.place});
 }
 
 std::vector<ShownWords> words_of(const Script& script) {
@@ -42,6 +45,25 @@ std::string headline_text(const SceneDef& scene, double time) {
   if (scene.text.title) line = scene.title;
   if (scene.text.time) line += fmt::format("{}t = {:.2f} s", line.empty() ? "" : "    ", time);
   return line;
+}
+
+std::string subtitle_text(const TextDef& text, double time) {
+  std::string lines;
+  for (const Subtitle& one : text.subtitles)
+    if (one.from < time && time <= one.to) lines += (lines.empty() ? "" : "\n") + one.text;
+  return lines;
+}
+
+std::vector<std::string> all_subtitles(const TextDef& text) {
+  std::vector<double> ends;  // between two of these times, the same ones are shown
+  for (const Subtitle& one : text.subtitles) ends.push_back(one.to);
+  for (const Subtitle& one : text.subtitles) ends.push_back(one.from);
+  std::vector<std::string> all;
+  for (const double end : ends) {
+    std::string lines = subtitle_text(text, end);
+    if (!lines.empty() && std::ranges::find(all, lines) == all.end()) all.push_back(std::move(lines));
+  }
+  return all;
 }
 
 std::string longest_headline(const SceneDef& scene) {
@@ -78,7 +100,32 @@ std::string longest_note(const SceneDef& scene) {
   return longest;
 }
 
-std::optional<Problem> letters_warning(const Script& script, const std::string& font) {
+namespace {
+
+// Names the Debian package with fonts for a character.
+std::string package_for(const std::string& character) {
+  const char32_t point = code_points(character).front();
+  if (is_ideographic(point) || (point >= 0x1100 && point <= 0x11FF) || (point >= 0xAC00 && point <= 0xD7FF))
+    return "fonts-noto-cjk";
+  return point >= 0x1F000 && point <= 0x1FBFF ? "fonts-symbola" : "fonts-noto-core";
+}
+
+std::string remedy_for(const std::vector<std::string>& missing) {
+  if (!searches_fonts())
+    return "this build draws with one font alone, because fontconfig and raqm were missing (Debian: libfontconfig-dev, "
+           "libraqm-dev)";
+  std::vector<std::string> packages;
+  for (const std::string& character : missing) {
+    std::string package = package_for(character);
+    if (std::ranges::find(packages, package) == packages.end()) packages.push_back(std::move(package));
+  }
+  return fmt::format("a font that has {} may be in Debian's {}", missing.size() == 1 ? "it" : "them",
+                     fmt::join(packages, " and "));
+}
+
+}  // namespace
+
+std::optional<Problem> letters_warning(const Script& script, const Font& font) {
   if (font.empty()) return std::nullopt;
   std::vector<std::string> missing, where;
   std::optional<FilePlace> place;
@@ -91,9 +138,9 @@ std::optional<Problem> letters_warning(const Script& script, const std::string& 
       if (std::ranges::find(missing, one) == missing.end()) missing.push_back(one);
   }
   if (!place) return std::nullopt;
-  return Problem{*place, fmt::format("the font of the pictures, {}, has no '{}', which {} {}: boxes are drawn instead",
-                                     std::filesystem::path(font).filename().string(), fmt::join(missing, "', '"),
-                                     fmt::join(where, " and "), where.size() == 1 ? "has" : "have")};
+  return Problem{*place,
+                 fmt::format("no font has '{}', which {} {}: boxes are drawn instead; {}", fmt::join(missing, "', '"),
+                             fmt::join(where, " and "), where.size() == 1 ? "has" : "have", remedy_for(missing))};
 }
 
 }  // namespace supple

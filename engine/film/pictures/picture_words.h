@@ -5,8 +5,10 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "output/run/profile.h"
+#include "render/font.h"
 #include "scene/replay/script.h"
 
 namespace supple {
@@ -24,9 +26,16 @@ std::string note_text(const TextDef& text, const BodyDef& body, const BodyRow* r
 // Returns a note that is as long as any of the scene's, so that captions can keep room for it.
 std::string longest_note(const SceneDef& scene);
 
-// Warns of characters in the title and in the captions, at any time of the film, for which the font has no glyph: the
-// pictures show boxes in their place. font: the font's file; empty where there is no font, and then there are no
-// captions.
-std::optional<Problem> letters_warning(const Script& script, const std::string& font);
+// Returns the subtitle of a picture; several that are shown at one time stand one below the other; empty where there is
+// none. time: the time of the film [s].
+std::string subtitle_text(const TextDef& text, double time);
+
+// Returns all subtitles that pictures of the film may show, each once.
+std::vector<std::string> all_subtitles(const TextDef& text);
+
+// Warns of characters in the title, in captions and subtitles, at any time of the film, for which no
+// installed font has a glyph: the pictures show boxes in their place. font: of the words; empty where there is none,
+// and then there are no words.
+std::optional<Problem> letters_warning(const Script& script, const Font& font);
 
 }  // namespace supple

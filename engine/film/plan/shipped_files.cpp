@@ -7,6 +7,8 @@
 #include "base/error.h"
 #include "base/near_files.h"
 #include "base/read_file.h"
+#include "base/text.h"
+#include "render/font_search.h"
 #include "scene/reading/model_scene.h"
 
 namespace supple {
@@ -39,14 +41,29 @@ std::vector<std::string> shipped_names(const std::string& kind) {
   return names;
 }
 
-std::string caption_font() {
+namespace {
+
+Font font_asked_for(const TextDef& text) {
+  if (!searches_fonts())
+    throw InputError({Problem{text.font_place,
+                              "font: this build cannot look for fonts: fontconfig and raqm were missing "
+                              "(Debian: libfontconfig-dev, libraqm-dev)"}});
+  if (std::optional<Font> font = font_of_family(text.font)) return *font;
+  throw InputError({Problem{text.font_place, fmt::format("font: no font of the family '{}' is installed{}", text.font,
+                                                         did_you_mean(text.font, font_families()))}});
+}
+
+}  // namespace
+
+Font caption_font(const TextDef& text) {
+  if (!text.font.empty()) return font_asked_for(text);
   for (const char* font :
        {"/usr/share/fonts/truetype/lato/Lato-Regular.ttf", "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
         "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"}) {
     std::error_code error;
-    if (std::filesystem::exists(font, error)) return font;
+    if (std::filesystem::exists(font, error)) return {font, 0};
   }
-  return "";
+  return font_with(U'a').value_or(Font{});
 }
 
 std::filesystem::path scene_file(const std::string& name) {

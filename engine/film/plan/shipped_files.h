@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "render/font.h"
+#include "scene/definition/scene_def.h"
 #include "scene/reading/scene_source.h"
 
 namespace supple {
@@ -17,8 +19,9 @@ std::filesystem::path shaders_folder();
 // folder.
 std::vector<std::string> shipped_names(const std::string& kind);
 
-// Returns the file of a sans-serif font for captions; empty when none of the known fonts is installed.
-std::string caption_font();
+// Returns the font of a film's words: that of the family that its text asks for, or else a usual sans-serif one; empty
+// when none is installed. Throws InputError when the family is not.
+Font caption_font(const TextDef& text = {});
 
 // Returns the scene or replay that a user means: a file, or the name of one that ships ("squirrel"). Throws InputError
 // where there is neither.

@@ -25,6 +25,7 @@ nlohmann::ordered_json files_of(const Script& script, const std::vector<Body>& b
   };
   for (const Body& body : bodies) add(body.files);
   add_colliders(script.scene());
+  if (const auto& subtitles = script.scene().text.subtitle_file) files.push_back(*subtitles);
   for (const TimedChange& change : script.changes()) {
     if (!change.cost.surface || change.over > 0) continue;  // a ramp cannot change a file's name
     try {

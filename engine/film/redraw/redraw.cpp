@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "film/pictures/drawn_film.h"
@@ -94,6 +95,12 @@ void check_smooth(const DrawPlan& plan, const SceneDef& scene) {
                                  other));
 }
 
+// A rate that is a whole number, or has few digits, stands as one in JSON.
+Json rate_json(const FrameRate& rate) {
+  const std::string text = rate.text();
+  return text.find('/') == text.npos ? Json(static_cast<double>(rate)) : Json(text);
+}
+
 }  // namespace
 
 LoadedDrawing load_drawing(const DrawPlan& plan) {
@@ -101,7 +108,7 @@ LoadedDrawing load_drawing(const DrawPlan& plan) {
   FilmPlan film = plan_of_run(run, plan.scene, plan.settings);
   film.cache = plan.cache;
   film.quiet = plan.quiet;
-  LoadedDrawing drawing{load_film(film, {}), {}, {}, {}, 0, {}, plan.smooth, 0, {}};
+  LoadedDrawing drawing{load_film(film, {}), {}, {}, {}, 0, {}, plan.smooth, 30, {}};
   check_same_motion(run, drawing.film);
   check_passes(drawing.film.world.script().scene());
   check_smooth(plan, drawing.film.world.script().scene());
@@ -113,15 +120,17 @@ LoadedDrawing load_drawing(const DrawPlan& plan) {
   drawing.frame_count = frames_with_motion(drawing);
   drawing.frames = frames_of(plan, drawing.frame_count);
   check_references(drawing.film.world.script().scene(), drawing.film.world.bodies(), drawing.frames.back());
-  drawing.rate = plan.rate > 0 ? plan.rate : drawing.film.world.script().scene().fps / plan.every;
+  drawing.rate = plan.rate.value_or(drawing.film.world.script().scene().fps.over(plan.every));
   Json identity = {
       {"program", program_version()},
       {"run", std::filesystem::absolute(plan.run).lexically_normal().string()},
       {"frames", {{"first", drawing.frames.front()}, {"every", plan.every}, {"count", drawing.frames.size()}}},
-      {"rate", drawing.rate},
+      {"rate", rate_json(drawing.rate)},
       {"gl", name_of(plan.gl)},
       {"scene", json_if_valid<Json>(drawing.film.info.scene_json)}};
   if (plan.smooth > 1) identity["smooth"] = plan.smooth;
+  if (const auto& subtitles = drawing.film.world.script().scene().text.subtitle_file)
+    identity["subtitles"] = hash_text_form(subtitles->hash);
   if (!drawing.film.info.replay_json.empty()) identity["replay"] = json_if_valid<Json>(drawing.film.info.replay_json);
   drawing.identity = json_text(identity, 1) + "\n";
   return drawing;

@@ -24,7 +24,7 @@ struct DrawPlan {
   std::vector<std::string> settings;    // path=value, in place of the run's values; only of what is seen
   int first = 0, last = -1, every = 1;  // frames of the run; last < 0: the run's last frame
   int smooth = 1;                       // pictures for each of these frames; those between are interpolated
-  double rate = 0;  // frames a second of the film; 0: one frame of the run, or part of one, a picture
+  std::optional<FrameRate> rate;        // of the film; nothing: one frame of the run, or part of one, a picture
   GlChoice gl = GlChoice::automatic;
   bool legend_apart = false;  // pictures have no legend; the result holds it
   bool cache = true;          // of meshes and skins
@@ -40,7 +40,7 @@ struct LoadedDrawing {
   int frame_count = 0;                  // of the run
   std::vector<int> frames;              // of the run, that are drawn
   int smooth = 1;                       // pictures for each of them but the last
-  double rate = 0;                      // frames a second of the film
+  FrameRate rate = 30;                  // of the film
   std::string identity;                 // JSON: all that the pictures depend on
 };
 

@@ -44,12 +44,12 @@ Grid grid_of(const PngImage& first, int panels, int columns) {
 }
 
 // Makes a text smaller until it is no wider than its panel.
-int fitting_em(const std::string& font, const std::string& text, int em, int width) {
+int fitting_em(const Font& font, const std::string& text, int em, int width) {
   while (em > 7 && draw_caption(font, text, em).width > width) --em;
   return em;
 }
 
-void write_line(Sticker& strip, const std::string& font, const std::string& text, int em, int y, const Vec3& color) {
+void write_line(Sticker& strip, const Font& font, const std::string& text, int em, int y, const Vec3& color) {
   if (text.empty() || font.empty()) return;
   const int fitting = fitting_em(font, text, em, strip.width() - em);
   strip.text(font, text, fitting, (strip.width() - draw_caption(font, text, fitting).width) / 2, y, color);

@@ -35,7 +35,7 @@ struct Panel {
 struct SplitScreen {
   std::vector<Panel> panels;
   int columns = 1;
-  std::string font;                 // a file; empty: no words
+  Font font;                        // empty: no words
   std::optional<FieldLook> legend;  // of the field that all panels show
 };
 

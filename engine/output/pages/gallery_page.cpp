@@ -9,6 +9,7 @@
 #include "base/read_file.h"
 #include "output/files/json_text.h"
 #include "output/files/markup.h"
+#include "output/pages/page_parts.h"
 #include "output/run/profile.h"
 #include "output/run/run_record.h"
 
@@ -18,14 +19,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view gallery_style = R"css(
-:root { --ink: #1d1f21; --soft: #63686e; --line: #d9dbde; --faint: #eef0f2; --bad: #b3400a; }
-* { box-sizing: border-box; }
-body { margin: 0 auto; padding: 1.5rem 1rem 3rem; max-width: 84rem; color: var(--ink); background: #fff;
-  font: 1rem/1.5 "Source Sans 3", "Source Sans Pro", Lato, "Helvetica Neue", Helvetica, Arial, "Liberation Sans", sans-serif; }
+body { padding: 1.5rem 1rem 3rem; max-width: 84rem; }
 h1 { font-size: 1.6rem; line-height: 1.2; margin: 0 0 0.3rem; }
 h2 { font-size: 1.1rem; margin: 2.5rem 0 0.5rem; }
 p { margin: 0 0 1rem; }
-.soft, .soft a { color: var(--soft); }
 .cards { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(22rem, 100%), 1fr)); gap: 1.6rem 1.2rem; }
 .card { display: flex; flex-direction: column; min-width: 0; scroll-margin-top: 1rem; }
 .view { position: relative; aspect-ratio: 16 / 9; background: var(--faint); border-radius: 6px; overflow: hidden; display: flex;
@@ -35,52 +32,57 @@ p { margin: 0 0 1rem; }
   background: rgba(29, 31, 33, 0.62); color: #fff; font-size: 0.75rem; line-height: 1.9rem; text-align: center; text-indent: 0.12em;
   transition: opacity 0.2s; pointer-events: none; }
 .view.playing::after { opacity: 0; }
-.view video:focus-visible { outline: 3px solid #0072b2; outline-offset: -3px; }
-.view video, .view img { display: block; width: 100%; height: 100%; object-fit: contain; }
+.view video:focus-visible { outline-offset: -3px; }
+.view video, .view img { width: 100%; height: 100%; object-fit: contain; }
 .view span { color: var(--soft); }
 .card h3 { font-size: 1rem; line-height: 1.3; font-weight: 600; margin: 0.6rem 0 0.15rem; }
 .card code { font-size: 0.8rem; color: var(--soft); }
 .figures { display: flex; flex-wrap: wrap; gap: 0 1rem; margin: 0.15rem 0 0; font-size: 0.85rem; color: var(--soft);
   font-variant-numeric: tabular-nums; }
 .figures b { font-weight: 600; color: var(--ink); }
-.trouble { margin: 0.3rem 0 0; padding: 0.35rem 0.6rem; border-left: 4px solid var(--bad); background: #fdf3ec;
+.trouble { margin: 0.3rem 0 0; padding: 0.35rem 0.6rem; border-left: 4px solid var(--bad); background: var(--warm);
   font-size: 0.85rem; overflow-wrap: anywhere; }
-.box { overflow-x: auto; }
-table { border-collapse: collapse; font-size: 0.875rem; font-variant-numeric: tabular-nums; }
 th, td { padding: 0.25rem 0.8rem; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
-th:first-child, td:first-child { text-align: left; padding-left: 0; position: sticky; left: 0; background: #fff; }
-th { font-weight: 600; cursor: pointer; vertical-align: bottom; }
-th[aria-sort="ascending"]::after { content: " ↑"; }
-th[aria-sort="descending"]::after { content: " ↓"; }
+th:first-child, td:first-child { text-align: left; padding-left: 0; position: sticky; left: 0; background: var(--paper); }
+th { font-weight: 600; vertical-align: bottom; }
 td a { color: inherit; }
 .bad { color: var(--bad); }
+@media print {
+  .cards { grid-template-columns: 1fr 1fr; gap: 0.5cm; }
+  .view.film::after { display: none; }
+}
 )css";
 
 // A film plays while the pointer is over it. A click, a tap or the keys for buttons start and stop it for good, and a
-// double click fills the screen with it. A click on a column's head sorts the table.
+// double click fills the screen with it. The keys of a film's own page step it.
 constexpr std::string_view gallery_script = R"js(
-"use strict";
 for (const film of document.querySelectorAll("video")) {
-  const view = film.parentElement;
+  const view = film.parentElement, still = view.querySelector("img"), rate = +film.dataset.rate;
   let byHand = false;
   const toggle = () => { byHand = film.paused || !byHand; byHand ? film.play() : film.pause(); };
+  const seek = frame => {
+    const last = Math.round(film.duration * rate) - 1;
+    byHand = false;
+    film.pause();
+    film.currentTime = (Math.min(last, Math.max(0, frame(Math.floor(film.currentTime * rate + 1e-6), last))) + 0.5) / rate;
+  };
+  const keys = {
+    Enter: toggle, " ": toggle, Home: () => seek(() => 0), End: () => seek((now, last) => last),
+    ArrowLeft: () => seek(now => now - 1), ArrowRight: () => seek(now => now + 1),
+  };
+  if (still) film.poster = still.src;
   film.addEventListener("play", () => view.classList.add("playing"));
   film.addEventListener("pause", () => view.classList.remove("playing"));
   film.addEventListener("pointerenter", event => { if (event.pointerType === "mouse" && film.paused) film.play(); });
   film.addEventListener("pointerleave", event => { if (event.pointerType === "mouse" && !byHand) film.pause(); });
   film.addEventListener("click", toggle);
   film.addEventListener("dblclick", () => film.requestFullscreen());
-  film.addEventListener("keydown", event => { if (event.key === "Enter" || event.key === " ") { event.preventDefault(); toggle(); } });
+  film.addEventListener("keydown", event => {
+    if (!(event.key in keys) || event.ctrlKey || event.altKey || event.metaKey) return;
+    event.preventDefault();
+    keys[event.key]();
+  });
 }
-const body = document.querySelector("tbody");
-for (const head of document.querySelectorAll("th")) head.addEventListener("click", () => {
-  const column = head.cellIndex, up = head.getAttribute("aria-sort") !== "ascending";
-  for (const other of document.querySelectorAll("th")) other.removeAttribute("aria-sort");
-  head.setAttribute("aria-sort", up ? "ascending" : "descending");
-  const key = row => { const text = row.cells[column].dataset.value; return column === 0 ? text : text === "" ? Infinity : +text; };
-  const rows = [...body.rows].sort((a, b) => { const x = key(a), y = key(b); return (x < y ? -1 : x > y ? 1 : 0) * (up ? 1 : -1); });
-  body.append(...rows);
-});
 )js";
 
 // Holds what is known of a scene's run.
@@ -127,14 +129,17 @@ bool has_film(const GalleryScene& scene) {
   return !scene.folder.empty() && std::filesystem::exists(scene.folder / "video.mp4", error);
 }
 
-std::string view_html(const GalleryScene& scene) {
+// fps: of the film.
+std::string view_html(const GalleryScene& scene, double fps) {
   std::error_code error;
   const std::filesystem::path poster = scene.folder / "poster.png", film = scene.folder / "video.mp4";
   const bool has_poster = !scene.folder.empty() && std::filesystem::exists(poster, error);
   if (has_film(scene))
-    return fmt::format("<video tabindex=\"0\" loop muted playsinline preload=\"metadata\"{} src=\"{}\"></video>",
-                       has_poster ? " poster=\"" + data_address(poster, "image/png") + "\"" : "",
-                       data_address(film, "video/mp4"));
+    return fmt::format(
+        "<video tabindex=\"0\" aria-label=\"{}\" data-rate=\"{}\" loop muted playsinline preload=\"metadata\" "
+        "src=\"{}\"></video>{}",
+        markup_text(scene.name), fps, data_address(film, "video/mp4"),
+        has_poster ? "<img class=\"paper\" alt=\"\" src=\"" + data_address(poster, "image/png") + "\">" : "");
   if (has_poster)
     return fmt::format("<img alt=\"{}\" src=\"{}\">", markup_text(scene.name), data_address(poster, "image/png"));
   return "<span>no picture</span>";
@@ -143,7 +148,7 @@ std::string view_html(const GalleryScene& scene) {
 std::string card_html(const GalleryScene& scene, const std::optional<Figures>& figures) {
   std::string html =
       fmt::format("<section class=\"card\" id=\"{0}\"><div class=\"view{3}\">{1}</div>\n<h3>{2}</h3><code>{0}</code>\n",
-                  markup_text(scene.name), view_html(scene),
+                  markup_text(scene.name), view_html(scene, figures ? figures->fps : 30),
                   markup_text(scene.title.empty() ? scene.name : scene.title), has_film(scene) ? " film" : "");
   if (figures && !figures->run.rows.empty())
     html += fmt::format(
@@ -180,12 +185,8 @@ std::string row_html(const GalleryScene& scene, const std::optional<Figures>& fi
 }  // namespace
 
 std::string gallery_page(const std::string& heading, const std::string& note, const std::vector<GalleryScene>& scenes) {
-  std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<title>" +
-      markup_text(heading) + "</title>\n<style>" + std::string(gallery_style) + "</style></head><body>\n<h1>" +
-      markup_text(heading) + "</h1>\n<p class=\"soft\">" + markup_text(note) +
-      " <a href=\"#figures\">All figures</a></p>\n<main class=\"cards\">\n";
+  std::string html = page_begin(heading, gallery_style) + "<h1>" + markup_text(heading) + "</h1>\n<p class=\"soft\">" +
+                     markup_text(note) + " <a href=\"#figures\">All figures</a></p>\n<main class=\"cards\">\n";
   std::string rows;
   for (const GalleryScene& scene : scenes) {
     const std::optional<Figures> figures = figures_of(scene);
@@ -196,8 +197,7 @@ std::string gallery_page(const std::string& heading, const std::string& note, co
   for (const char* head : {"scene", "bodies", "vertices", "elements", "frames", "solving, median [ms]", "95 % [ms]",
                            "slowest [ms]", "largest estimated error", "of motion", "film"})
     html += fmt::format("<th scope=\"col\">{}</th>", head);
-  return html + "</tr></thead><tbody>\n" + rows + "</tbody></table></div>\n<script>" + std::string(gallery_script) +
-         "</script></body></html>\n";
+  return html + "</tr></thead><tbody>\n" + rows + "</tbody></table></div>\n" + page_end(gallery_script);
 }
 
 }  // namespace supple

@@ -11,15 +11,13 @@
 #include "base/error.h"
 #include "output/files/markup.h"
 #include "output/files/whole_file.h"
+#include "output/pages/page_parts.h"
 
 namespace supple {
 namespace {
 
 constexpr std::string_view report_style = R"css(
-:root { color-scheme: light; --ink: #1d1f21; --soft: #63686e; --line: #d9dbde; --faint: #f5f6f7; --link: #23548a; }
-* { box-sizing: border-box; }
-html { -webkit-text-size-adjust: 100%; }
-body { margin: 0 auto; padding: 2.5rem 1.25rem 4rem; max-width: 74rem; color: var(--ink); background: #fff;
+body { padding: 2.5rem 1.25rem 4rem; max-width: 74rem;
   font: 1.0625rem/1.6 Charter, "Bitstream Charter", "Source Serif 4", "Source Serif Pro", Georgia, "Liberation Serif", serif; }
 h1, h2, h3, dt, dd, nav, table, figcaption, .note, .files, .missing { font-family: "Source Sans 3", "Source Sans Pro", "Lato",
   "Helvetica Neue", Helvetica, Arial, "Liberation Sans", sans-serif; }
@@ -28,7 +26,7 @@ p { max-width: 44rem; margin: 0 0 1em; }
 h1 { font-size: 2.1rem; line-height: 1.2; margin: 0 0 1.2rem; letter-spacing: -0.01em; }
 h2 { font-size: 1.5rem; line-height: 1.25; margin: 3.5rem 0 1rem; padding-top: 1.1rem; border-top: 1px solid var(--line); }
 h3 { font-size: 1.0625rem; line-height: 1.35; margin: 0; }
-a { color: var(--link); text-decoration-thickness: 1px; text-underline-offset: 0.15em; }
+a { text-decoration-thickness: 1px; text-underline-offset: 0.15em; }
 .lead p { font-size: 1.2rem; line-height: 1.5; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: 0.15rem 1.25rem; margin: 1.75rem 0; padding: 0.9rem 1.1rem;
   background: var(--faint); border-radius: 4px; font-size: 0.9rem; line-height: 1.5; }
@@ -45,27 +43,27 @@ figcaption { max-width: 50rem; margin-bottom: 0.6rem; }
 figcaption p, .note p { max-width: 50rem; margin: 0.35rem 0 0; font-size: 0.925rem; line-height: 1.5; }
 .plot figcaption, .picture figcaption { margin: 0.4rem 0 0; }
 .picture img { display: block; max-width: 100%; height: auto; }
-.box { overflow: auto; width: fit-content; max-width: 100%; max-height: 85vh; border: solid var(--line); border-width: 1px 0;
+.box { width: fit-content; max-height: 85vh; border: solid var(--line); border-width: 1px 0;
   /* a shadow at the side where there is more to scroll to */
-  background: linear-gradient(to right, #fff 40%, #fff0) left / 3rem 100% no-repeat local,
-    linear-gradient(to left, #fff 40%, #fff0) right / 3rem 100% no-repeat local,
-    linear-gradient(to right, #1d2f4533, #1d2f4500) left / 0.9rem 100% no-repeat scroll,
-    linear-gradient(to left, #1d2f4533, #1d2f4500) right / 0.9rem 100% no-repeat scroll; }
+  background: linear-gradient(to right, var(--paper) 40%, var(--clear)) left / 3rem 100% no-repeat local,
+    linear-gradient(to left, var(--paper) 40%, var(--clear)) right / 3rem 100% no-repeat local,
+    linear-gradient(to right, var(--shade), transparent) left / 0.9rem 100% no-repeat scroll,
+    linear-gradient(to left, var(--shade), transparent) right / 0.9rem 100% no-repeat scroll; }
 .plot .box { width: auto; max-width: 62rem; border: 0; max-height: none; }
 .plot svg { display: block; width: 100%; min-width: 35rem; height: auto; }
 .plot svg text { font-family: "Source Sans 3", "Source Sans Pro", "Lato", "Helvetica Neue", Helvetica, Arial, "Liberation Sans",
   sans-serif; }
-table { border-collapse: collapse; font-size: 0.875rem; line-height: 1.4; font-variant-numeric: tabular-nums lining-nums; }
+table { line-height: 1.4; }
 th, td { padding: 0.34rem 0.75rem; text-align: left; vertical-align: top; }
-th { position: sticky; top: 0; vertical-align: bottom; background: #fff; font-weight: 600; box-shadow: inset 0 -1px var(--line); }
+th { position: sticky; top: 0; vertical-align: bottom; background: var(--paper); font-weight: 600; box-shadow: inset 0 -1px var(--line); }
 th .unit { color: var(--soft); font-weight: 400; white-space: nowrap; }
 td { white-space: pre-line; }
 td.long { min-width: 15rem; }
-tbody tr:nth-child(even) { background: #1d2f450b; }
-tbody tr:hover { background: #23548a1c; }
+tbody tr:nth-child(even) { background: var(--stripe); }
+tbody tr:hover { background: var(--over); }
 .number { text-align: right; }
 td.number, td.short { white-space: nowrap; }
-th.row, td.row { color: #8b9096; font-weight: 400; padding-left: 0.4rem; text-align: right; }
+th.row, td.row { color: var(--soft); font-weight: 400; padding-left: 0.4rem; text-align: right; }
 .files { margin: 0.45rem 0 0; font-size: 0.8125rem; color: var(--soft); }
 .missing { padding: 1rem 1.2rem; background: var(--faint); font-size: 0.925rem; max-width: none; }
 @media (max-width: 40rem) {
@@ -78,22 +76,15 @@ th.row, td.row { color: #8b9096; font-weight: 400; padding-left: 0.4rem; text-al
   nav ul { display: none; }
   th, td { padding: 0.3rem 0.5rem; }
 }
+/* Plots are drawn for white paper: on a dark screen their lightness is turned round, and their hues stay. */
+@media screen and (prefers-color-scheme: dark) { .plot svg { filter: invert(0.92) hue-rotate(180deg); } }
 @media print {
-  @page { margin: 1.6cm; }
-  body { padding: 0; max-width: none; font-size: 10pt; }
   a { color: inherit; }
   nav { display: none; }
-  .box { overflow: visible; max-height: none; background: none; }
-  table { font-size: 7.5pt; }
-  th { position: static; }
-  th, td { padding: 0.15rem 0.35rem; }
-  td.short { white-space: normal; }
+  .box { background: none; }
   td.long { min-width: 0; }
-  thead { display: table-header-group; }
-  tr, .plot { break-inside: avoid; }
-  h2, h3, figcaption { break-after: avoid; }
   .plot svg { min-width: 0; }
-  * { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+  figure.table { break-inside: auto; }
 }
 )css";
 
@@ -298,12 +289,9 @@ std::vector<std::string> write_page(const ReportPage& given, const std::filesyst
   ReportPage page = given;
   assign_looks(page);
   std::vector<std::string> missing;
-  std::string html = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header>\n<h1>{0}</h1>\n<div "
-      "class=\"lead\">\n{2}</div>\n",
-      markup_text(page.title), report_style, paragraphs(page.lead));
+  std::string html = page_begin(page.title, report_style);
+  html += fmt::format("<header>\n<h1>{}</h1>\n<div class=\"lead\">\n{}</div>\n", markup_text(page.title),
+                      paragraphs(page.lead));
   if (!page.facts.empty()) html += "<dl>\n";
   for (const auto& [what, value] : page.facts)
     html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", markup_text(what), markup_text(value));
@@ -325,7 +313,7 @@ std::vector<std::string> write_page(const ReportPage& given, const std::filesyst
     }
     html += "</section>\n";
   }
-  write_whole_file(folder / "index.html", html + "</main>\n</body>\n</html>\n");
+  write_whole_file(folder / "index.html", html + "</main>\n" + page_end(""));
   return missing;
 }
 

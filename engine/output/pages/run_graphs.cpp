@@ -10,11 +10,10 @@
 #include <span>
 
 #include "output/files/markup.h"
+#include "output/pages/page_parts.h"
 
 namespace supple {
 namespace {
-
-constexpr std::array colors = {"#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#767b80", "#8c6d31"};
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
@@ -61,8 +60,8 @@ std::vector<PairRow> deepest_of_pairs(const std::vector<FrameRow>& rows) {
 FrameGraph pairs_graph(const std::vector<FrameRow>& rows, std::string title,
                        const std::function<double(const PairRow&)>& value) {
   std::vector<PairRow> shown = deepest_of_pairs(rows);
-  if (shown.size() > colors.size()) title += fmt::format(" (the {} deepest pairs)", colors.size());
-  shown.resize(std::min(shown.size(), colors.size()));
+  if (shown.size() > curve_colors) title += fmt::format(" (the {} deepest pairs)", curve_colors);
+  shown.resize(std::min(shown.size(), curve_colors));
   FrameGraph graph{std::move(title), "", false, {}};
   for (const PairRow& one : shown) {
     const std::string other = one.bodies[0] == one.bodies[1] ? "itself" : one.bodies[1];
@@ -205,7 +204,7 @@ std::string graph_html(const FrameGraph& graph, std::size_t first, double from, 
                      (graph.unit.empty() ? "" : " [" + graph.unit + "]") + "</b>\n";
   for (std::size_t s = 0; s < graph.series.size(); ++s)
     html += fmt::format("<span><i style=\"background:{}\"></i>{} <output data-series=\"{}\"></output></span>\n",
-                        colors[s % colors.size()], markup_text(graph.series[s].name), first + s);
+                        curve_color(s), markup_text(graph.series[s].name), first + s);
   html += "</div><div class=\"area\">\n";
   for (const double tick : axis.ticks) {
     const double top = 100 * (1 - axis.place(tick));
@@ -215,7 +214,7 @@ std::string graph_html(const FrameGraph& graph, std::size_t first, double from, 
   }
   html += "<svg viewBox=\"0 0 1000 1000\" preserveAspectRatio=\"none\" aria-hidden=\"true\">\n";
   for (std::size_t s = 0; s < graph.series.size(); ++s)
-    html += fmt::format("<path stroke=\"{}\" d=\"{}\"/>\n", colors[s % colors.size()], path_of(graph.series[s], axis));
+    html += fmt::format("<path style=\"stroke:{}\" d=\"{}\"/>\n", curve_color(s), path_of(graph.series[s], axis));
   html += "</svg><div class=\"cursor\"></div></div>\n";
   return html + fmt::format("<div class=\"times\"><span>{:.2f} s</span><span>{:.2f} s</span></div></div>\n", from, to);
 }

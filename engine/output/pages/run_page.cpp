@@ -10,6 +10,7 @@
 
 #include "output/files/json_text.h"
 #include "output/files/markup.h"
+#include "output/pages/page_parts.h"
 #include "output/pages/run_graphs.h"
 #include "output/run/run_folder.h"
 
@@ -19,16 +20,16 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view style_sheet = R"css(
-:root { --ink: #1d1f21; --soft: #63686e; --line: #d9dbde; --faint: #f5f6f7; }
-* { box-sizing: border-box; }
-body { margin: 0 auto; padding: 1.5rem 1rem 3rem; max-width: 62rem; color: var(--ink); background: #fff;
-  font: 1rem/1.5 "Source Sans 3", "Source Sans Pro", Lato, "Helvetica Neue", Helvetica, Arial, "Liberation Sans", sans-serif; }
+body { padding: 1rem 1rem 3rem; max-width: 62rem; }
 h1 { font-size: 1.6rem; line-height: 1.2; margin: 0 0 0.3rem; }
 h2 { font-size: 1.1rem; margin: 2rem 0 0.5rem; }
 p { margin: 0 0 0.6rem; }
-.soft { color: var(--soft); }
-.warning { padding: 0.5rem 0.8rem; border-left: 4px solid #d55e00; background: #fdf3ec; overflow-wrap: anywhere; }
-video, .picture { display: block; width: 100%; height: auto; border-radius: 4px; background: var(--faint); margin: 1rem 0; }
+.warning { padding: 0.5rem 0.8rem; border-left: 4px solid var(--mark); background: var(--warm); overflow-wrap: anywhere; }
+video, .picture { display: block; max-width: 100%; max-height: 80vh; height: auto; border-radius: 4px; background: var(--faint);
+  margin: 0 auto 0.5rem; }
+video { width: 100%; object-fit: contain; }
+.keys { font-size: 0.85rem; text-align: center; margin-bottom: 1.2rem; }
+kbd { font: inherit; padding: 0 0.35em; border: 1px solid var(--line); border-radius: 3px; background: var(--faint); }
 .graph { margin: 0 0 1.4rem; }
 .legend { display: flex; flex-wrap: wrap; gap: 0.1rem 1rem; font-size: 0.85rem; margin: 0 0 0.3rem 3.6rem; }
 .legend b { font-weight: 600; }
@@ -40,14 +41,12 @@ video, .picture { display: block; width: 100%; height: auto; border-radius: 4px;
 .area path { fill: none; stroke-width: 1.6; vector-effect: non-scaling-stroke; }
 .tick { position: absolute; right: 100%; width: 3.4rem; margin-right: 0.3rem; text-align: right; font-size: 0.75rem; line-height: 1;
   transform: translateY(-50%); color: var(--soft); font-variant-numeric: tabular-nums; }
-.rule { position: absolute; left: 0; right: 0; border-top: 1px solid #eceef0; }
-.cursor { position: absolute; top: 0; bottom: 0; width: 0; border-left: 1.5px solid #1d1f21; pointer-events: none; }
+.rule { position: absolute; left: 0; right: 0; border-top: 1px solid var(--rule); }
+.cursor { position: absolute; top: 0; bottom: 0; width: 0; border-left: 1.5px solid var(--ink); pointer-events: none; }
 .times { display: flex; justify-content: space-between; margin-left: 3.6rem; font-size: 0.75rem; color: var(--soft); }
-.box { overflow-x: auto; }
-table { border-collapse: collapse; font-size: 0.875rem; font-variant-numeric: tabular-nums; }
 th, td { padding: 0.25rem 0.7rem; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
 tbody tr[data-frame] { cursor: pointer; }
-tbody tr[data-frame]:hover { background: var(--faint); }
+tbody tr[data-frame]:hover { background: var(--over); }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: 0.1rem 1rem; font-size: 0.9rem; margin: 0; }
 dt { color: var(--soft); }
 dd { margin: 0; overflow-wrap: anywhere; }
@@ -59,30 +58,40 @@ pre { white-space: pre-wrap; overflow-wrap: anywhere; font-size: 0.8rem; backgro
   .area { margin-left: 2.9rem; height: 7rem; }
   .tick { width: 2.7rem; }
 }
+@media print {
+  .picture { max-height: 10cm; }
+  .area { height: 3.2cm; }
+}
 )css";
 
-// The film's time moves the cursors; a click on a graph or on a row of the table moves the film.
+// The film's time moves the cursors; a click on a graph or on a row of the table moves the film. Keys move it wherever
+// the focus is, but where they mean something else: in a table that they scroll, on a button, in the closed part of the
+// page. On the film they mean the same as elsewhere, in place of what the browser would do with them there. On paper
+// stands the picture that the film shows.
 constexpr std::string_view script = R"js(
-"use strict";
 const data = JSON.parse(document.getElementById("data").textContent);
 const film = document.querySelector("video");
+const still = document.querySelector("img.paper");
 const areas = [...document.querySelectorAll(".area")];
 const last = data.frames - 1;
 let shown = 0;
+if (film && still) film.poster = still.src;
 function text(value) {
   if (value === null) return "–";
   const size = Math.abs(value);
   return size !== 0 && (size < 0.01 || size >= 1e5) ? value.toExponential(1) : String(+value.toPrecision(3));
 }
 function show(frame) {
+  if (last < 0) return;
   shown = Math.min(last, Math.max(0, frame));
   for (const area of areas) area.querySelector(".cursor").style.left = 100 * (last ? shown / last : 0) + "%";
   for (const out of document.querySelectorAll(".legend output")) out.value = text(data.series[out.dataset.series][shown]);
   for (const out of document.querySelectorAll("output.frame")) out.value = "Shown: frame " + shown + ", " + data.times[shown].toFixed(2) + " s.";
 }
 function seek(frame) {
-  if (film) { film.pause(); film.currentTime = (frame + 0.5) / data.rate; }
-  show(frame);
+  const to = Math.min(last, Math.max(0, frame));
+  if (film) { film.pause(); film.currentTime = (to + 0.5) / data.rate; }
+  show(to);
 }
 for (const area of areas) {
   const move = event => {
@@ -92,17 +101,40 @@ for (const area of areas) {
   area.addEventListener("pointerdown", event => { area.setPointerCapture(event.pointerId); move(event); });
   area.addEventListener("pointermove", event => { if (event.buttons) move(event); });
 }
-for (const row of document.querySelectorAll("tr[data-frame]")) row.addEventListener("click", () => seek(+row.dataset.frame));
+for (const row of document.querySelectorAll("tr[data-frame]")) {
+  row.tabIndex = 0;
+  row.addEventListener("click", () => seek(+row.dataset.frame));
+}
+const keys = {
+  " ": () => { if (film) film.paused ? film.play() : film.pause(); },
+  ArrowLeft: () => seek(shown - 1), ArrowRight: () => seek(shown + 1), Home: () => seek(0), End: () => seek(last),
+};
 document.addEventListener("keydown", event => {
-  if (event.target === film || (event.key !== "ArrowLeft" && event.key !== "ArrowRight")) return;
+  if (event.ctrlKey || event.altKey || event.metaKey || last < 0) return;
+  const row = event.target.closest("tr[data-frame]");
+  if (row && (event.key === "Enter" || event.key === " ")) {
+    event.preventDefault();
+    return seek(+row.dataset.frame);
+  }
+  const own = event.key === " " ? "button, summary, a, .box" : ".box";
+  if (!(event.key in keys) || event.target.closest(own)) return;
   event.preventDefault();
-  seek(shown + (event.key === "ArrowLeft" ? -1 : 1));
-});
+  event.stopPropagation();
+  keys[event.key]();
+}, true);
 function follow() {
   if (film && !film.paused) show(Math.floor(film.currentTime * data.rate + 1e-6));
   requestAnimationFrame(follow);
 }
 if (film) film.addEventListener("seeked", () => { if (film.paused) show(Math.floor(film.currentTime * data.rate + 1e-6)); });
+window.addEventListener("beforeprint", () => {
+  if (!film || !still || film.readyState < 2) return;
+  const canvas = document.createElement("canvas");
+  canvas.width = film.videoWidth;
+  canvas.height = film.videoHeight;
+  canvas.getContext("2d").drawImage(film, 0, 0);
+  still.src = canvas.toDataURL("image/jpeg", 0.92);
+});
 show(0);
 follow();
 )js";
@@ -122,10 +154,14 @@ std::string film_html(const RunRecord& run) {
   for (const char* kind : {"mp4", "webm"}) {
     const std::filesystem::path film = run.folder / (std::string("video.") + kind);
     if (!std::filesystem::exists(film, error)) continue;
+    // The still is the film's poster, and what paper shows of it.
     return fmt::format(
-        "<video controls loop muted playsinline preload=\"auto\" {} src=\"data:video/{};base64,{}\"></video>\n",
-        poster ? "poster=\"data:image/png;base64," + file_as_base64(picture_of(0)) + "\"" : "", kind,
-        file_as_base64(film));
+        "<video controls loop muted playsinline preload=\"auto\" src=\"data:video/{};base64,{}\"></video>\n"
+        "<img class=\"picture paper\" alt=\"a picture of the film\"{}>\n"
+        "<p class=\"soft keys screen\"><kbd>Space</kbd> plays and stops, <kbd>←</kbd> <kbd>→</kbd> step by one frame, "
+        "<kbd>Home</kbd> <kbd>End</kbd> go to the first and the last.</p>\n",
+        kind, file_as_base64(film),
+        poster ? " src=\"data:image/png;base64," + file_as_base64(picture_of(0)) + "\"" : "");
   }
   if (std::filesystem::exists(run.folder / "video.gif", error))
     return fmt::format("<img class=\"picture\" alt=\"the film\" src=\"data:image/gif;base64,{}\">\n",
@@ -268,14 +304,11 @@ std::string run_page(const RunRecord& run) {
   const std::size_t frames = run.rows.size();
   const double rate = frames > 0 && run.rows.front().time_s > 0 ? 1 / run.rows.front().time_s : 30;
   const double seconds = static_cast<double>(frames) / rate;
-  std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<title>" +
-      markup_text(title) + "</title>\n<style>" + std::string(style_sheet) + "</style></head><body>\n";
+  std::string html = page_begin(title, style_sheet) + film_html(run);
   html += "<h1>" + markup_text(title) + "</h1>\n";
   html += fmt::format("<p class=\"soft\">{} frames, {:.3g} s of film; {}. <output class=\"frame\"></output></p>\n",
                       frames, seconds, markup_text(run.ended()));
-  html += warnings_html(run) + film_html(run);
+  html += warnings_html(run);
   std::vector<FrameGraph> graphs;
   if (frames > 0) {
     graphs = graphs_of(run.rows);
@@ -287,8 +320,7 @@ std::string run_page(const RunRecord& run) {
     html += slowest_html(run.rows);
   }
   html += facts_html(info);
-  html += data_html(graphs, run.rows, rate) + "<script>" + std::string(script) + "</script></body></html>\n";
-  return html;
+  return html + data_html(graphs, run.rows, rate) + page_end(script);
 }
 
 }  // namespace supple

@@ -252,7 +252,8 @@ Json summary_json(const RowTally& tally, const std::string& verdict) {
                                    {"trials_per_iteration", step.trials}});
   }
   if (!verdict.empty()) summary["verdict"] = verdict;
-  summary["warnings"] = tally.warnings();
+  summary["warnings"] = tally.remarks();
+  for (std::string& warning : tally.warnings()) summary["warnings"].push_back(std::move(warning));
   return summary;
 }
 

@@ -81,6 +81,9 @@ class RowTally {
 
   // Rows come in the order of their frames.
   void add(const FrameRow& row);
+  // Adds a warning that was said when the film began; those of profile and JSON begin with it.
+  void remark(std::string warning) { remarks_.push_back(std::move(warning)); }
+  const std::vector<std::string>& remarks() const { return remarks_; }
 
   int frames() const { return frames_; }
   std::uint64_t last_hash() const { return last_hash_; }  // state_hash of the last row
@@ -106,6 +109,7 @@ class RowTally {
   std::string touch_table() const;
   std::string pair_table() const;
 
+  std::vector<std::string> remarks_;
   int frames_ = 0, last_frame_ = -1;
   int compared_ = 0, first_other_ = -1;  // frames that a live session has played, and the first that is not as there
   bool measured_ = false, touching_ = false;

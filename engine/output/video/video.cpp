@@ -102,7 +102,7 @@ const char* color_words(FilmFormat format) {
 // Keeps ffmpeg to files and pipes, whatever a name looks like. It wants to be told for its input and for its output.
 constexpr const char* local_alone = "-protocol_whitelist file,pipe";
 
-std::vector<std::string> ffmpeg_words(const std::filesystem::path& part, int width, int height, double fps,
+std::vector<std::string> ffmpeg_words(const std::filesystem::path& part, int width, int height, const FrameRate& fps,
                                       const FilmCoding& coding) {
   const bool gif = coding.chosen() == FilmFormat::gif;
   const std::string words =
@@ -110,7 +110,7 @@ std::vector<std::string> ffmpeg_words(const std::filesystem::path& part, int wid
       fmt::format(
           "ffmpeg -nostdin -y -loglevel error {} -f rawvideo -pixel_format {} -video_size {}x{} -framerate {} "
           "-i pipe:0 {} ",
-          local_alone, pixel_format(coding), width, height, fps, local_alone) +
+          local_alone, pixel_format(coding), width, height, fps.text(), local_alone) +
       (gif ? gif_words(coding)
            : fmt::format("-pix_fmt {} {} ", pixel_format(coding), color_words(coding.chosen())) +
                  codec_words(coding, encoder_threads(width, height)));
@@ -136,13 +136,13 @@ bool holds_coverage(FilmFormat format) {
   return false;
 }
 
-std::vector<std::string> coding_warnings(const FilmCoding& coding, double fps) {
+std::vector<std::string> coding_warnings(const FilmCoding& coding, const FrameRate& fps) {
   std::vector<std::string> list;
   if (const int every = frames_for_one(coding.chosen(), fps); every > 1)
     list.push_back(
-        fmt::format("a GIF shows no more than 50 pictures a second: of {:g}, it has one in {}, and its speed is "
+        fmt::format("a GIF shows no more than 50 pictures a second: of {}, it has one in {}, and its speed is "
                     "that of the film",
-                    fps, every));
+                    fps.text(), every));
   return list;
 }
 
@@ -159,13 +159,14 @@ std::string film_file(FilmFormat format) {
   return "";
 }
 
-VideoEncoder::VideoEncoder(std::filesystem::path video, int width, int height, double fps, const FilmCoding& coding)
+VideoEncoder::VideoEncoder(std::filesystem::path video, int width, int height, const FrameRate& fps,
+                           const FilmCoding& coding)
     : video_(std::move(video)), part_(part_of(video_)), width_(width), height_(height), coding_(coding) {
   std::error_code ignored;
   std::filesystem::remove(part_, ignored);  // of a run that was killed
   SUPPLE_CHECK(!coding.coverage || holds_coverage(coding.chosen()), ==, true);
   every_ = frames_for_one(coding_.chosen(), fps);
-  ffmpeg_.emplace(ffmpeg_words(part_, width, height, fps / every_, coding_));
+  ffmpeg_.emplace(ffmpeg_words(part_, width, height, fps.over(every_), coding_));
 }
 
 VideoEncoder::~VideoEncoder() {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/frame_rate.h"
 #include "base/names.h"
 #include "output/files/child_program.h"
 
@@ -50,7 +51,7 @@ struct FilmCoding {
 bool holds_coverage(FilmFormat format);
 
 // Returns what a film of pictures at this rate cannot hold of them, for people.
-std::vector<std::string> coding_warnings(const FilmCoding& coding, double fps);
+std::vector<std::string> coding_warnings(const FilmCoding& coding, const FrameRate& fps);
 
 // Returns the name of the film's file in its folder, "video.mp4"; empty where there is no film.
 std::string film_file(FilmFormat format);
@@ -70,7 +71,7 @@ class VideoEncoder {
   // The file is written under a temporary name, and nothing of it remains unless the film becomes complete. The encoder
   // must be used and destroyed in the thread that creates it, except for add(), which one other thread may call
   // meanwhile.
-  VideoEncoder(std::filesystem::path video, int width, int height, double fps, const FilmCoding& coding = {});
+  VideoEncoder(std::filesystem::path video, int width, int height, const FrameRate& fps, const FilmCoding& coding = {});
   ~VideoEncoder();
 
   // Adds a frame: 8-bit sRGB, rows from the top, and for a film with coverage that of each pixel, by which the colours

@@ -131,7 +131,7 @@ bool may_stop_a_fall(const SceneCollider& collider, const Bounds& shaft) {
 
 // Warns of a body that falls through the ground, which every film shows at y = 0 and which stops nothing.
 void warn_of_fall(const SceneDef& scene, const Body& body, std::vector<Warning>& list) {
-  const double size = bounds_of(body.description.mesh.rest).diagonal(), duration = scene.frames / scene.fps;
+  const double size = bounds_of(body.description.mesh.rest).diagonal(), duration = scene.fps.time_of(scene.frames);
   for (std::size_t h = 0; h < body.description.handles.size(); ++h) {
     if (body.def.handles[h].from < duration) return;
   }

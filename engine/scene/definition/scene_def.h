@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/frame_rate.h"
 #include "base/names.h"
 #include "base/picture_pass.h"
+#include "geometry/files/source_file.h"
 #include "geometry/skins/skin.h"
 #include "scene/definition/start_state.h"
 #include "scene/definition/surface_motion.h"
@@ -378,8 +380,19 @@ struct FieldDef {
   std::filesystem::path reference;  // folder of the run to which distances are measured
 };
 
+// Holds a line of text that pictures show from one time of the film to another. The picture of a frame shows it when
+// the frame's time t has from < t <= to: a player that shows the frames one after the other shows it from `from` to
+// `to`.
+struct Subtitle {
+  double from = 0, to = 0;  // [s]
+  std::string text;         // in UTF-8; a newline begins another line
+  FilePlace place;          // in the scene or in its file of subtitles
+};
+
 // Chooses what pictures say in words; each part can be switched.
 struct TextDef {
+  std::string font;  // family of the letters; empty: the usual one
+  FilePlace font_place;
   // The title and the time stand in the upper left corner.
   bool title = false, time = false;
   // These numbers stand below the caption of each body, and tell of its steps in the frame.
@@ -387,6 +400,9 @@ struct TextDef {
   bool notes() const { return method || milliseconds || iterations || error; }
   // These are small graphs over the film so far, in a corner.
   bool error_graph = false, time_graph = false;
+  // These stand at the lower edge, in order of their begin.
+  std::vector<Subtitle> subtitles;
+  std::optional<SourceFile> subtitle_file;  // from which some of them are
 };
 
 struct OutputDef {
@@ -410,7 +426,7 @@ struct SceneDef {
   std::string name;   // of the file, without folder and ending
   std::string title;  // shown in pictures where text.title asks for it
   int frames = 120;
-  double fps = 30;
+  FrameRate fps = 30;
   int substeps = 1;
   Vec3 gravity = Vec3(0, -9.81, 0);
   std::uint64_t seed = 1;            // of random start states, and of gusts
@@ -430,11 +446,11 @@ struct SceneDef {
   // Returns how many frames the clock has behind it when the film begins. Frames of the film are counted from 0.
   int frames_before() const { return from ? from->frame + 1 : 0; }
   // Returns the time at which the film begins [s].
-  double time_at_start() const { return frames_before() / fps; }
+  double time_at_start() const { return fps.time_of(frames_before()); }
   // Returns the time after the steps of a frame [s], which its picture shows: its caption, the contact sheet, the run's
   // page, tables and files all tell it. A film begins with bodies that no picture shows; without `from`, frame 0 is at
   // 1 / fps.
-  double time_after(int frame) const { return (frames_before() + frame + 1) / fps; }
+  double time_after(int frame) const { return fps.time_of(frames_before() + frame + 1LL); }
   // Tells whether there is anything that a body may touch, besides itself. Runs keep contact forces where there is.
   bool may_touch() const { return !colliders.empty() || bodies.size() > 1; }
 };

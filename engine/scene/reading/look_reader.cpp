@@ -1,4 +1,9 @@
 // Reads what is seen beside the bodies and the camera: the tables [look], [field] and [text].
+#include <algorithm>
+
+#include "base/hash.h"
+#include "base/read_file.h"
+#include "scene/reading/srt_file.h"
 #include "scene/reading/table_readers.h"
 
 namespace supple {
@@ -50,6 +55,38 @@ FieldDef read_field(const ConfigTable& root) {
   return field;
 }
 
+namespace {
+
+Subtitle read_subtitle(const ConfigTable& row) {
+  Subtitle subtitle;
+  subtitle.from = row.number({"from", "s", "when it begins, in the film's time"}, std::nullopt, Range::at_least(0));
+  subtitle.to = row.number({"to", "s", "when it ends"}, std::nullopt, Range::at_least(0));
+  subtitle.text = row.text({"text", "", "what it says; a newline begins another line"}, std::nullopt);
+  subtitle.place = row.place("text");
+  if (row.has("from") && row.has("to") && subtitle.from >= subtitle.to)
+    row.complain("to", fmt::format("to = {:g}: must be after it begins, at {:g}", subtitle.to, subtitle.from));
+  std::string one_line = subtitle.text;
+  std::ranges::replace(one_line, '\n', ' ');
+  if (const std::string fault = subtitle_fault(one_line); !fault.empty()) row.complain("text", "text: " + fault);
+  if (row.has("text") && one_line.find_first_not_of(' ') == std::string::npos)
+    row.complain("text", "text: must not be empty");
+  return subtitle;
+}
+
+// Appends the subtitles of a file. What is wrong in it is a problem at its own line.
+void add_subtitle_file(const ConfigTable& table, const std::filesystem::path& file, TextDef& text) {
+  constexpr std::uintmax_t largest = 1'000'000;  // the same bound as for a scene's file
+  try {
+    const std::string content = read_text(file, largest);
+    for (Subtitle& one : read_srt(content, file.string())) text.subtitles.push_back(std::move(one));
+    text.subtitle_file = SourceFile{file, hash_bytes(content.data(), content.size())};
+  } catch (const InputError& error) {
+    for (const Problem& problem : error.problems()) table.config().complain(problem);
+  }
+}
+
+}  // namespace
+
 TextDef read_text(const ConfigTable& root) {
   TextDef text;
   const auto table = root.table({"text", "", "what the pictures say in words"});
@@ -69,6 +106,18 @@ TextDef read_text(const ConfigTable& root) {
   text.time_graph = table->boolean(
       {"time_graph", "", "in a corner: what the steps of each frame took; in drawings from saved motion alone"},
       text.time_graph);
+  text.font = table->text(
+      {"font", "", "family of the letters, such as \"DejaVu Serif\"; without it a usual one, Lato if it is installed"},
+      "");
+  text.font_place = table->place("font");
+  for (const ConfigTable& row : table->tables(
+           {"subtitles", "", "lines in the middle of the lower edge, each from one time of the film to another"}))
+    text.subtitles.push_back(read_subtitle(row));
+  if (const std::filesystem::path file =
+          table->file({"subtitle_file", "", "subtitles beside those, from a file in the format .srt"});
+      !file.empty())
+    add_subtitle_file(*table, file, text);
+  std::ranges::stable_sort(text.subtitles, {}, &Subtitle::from);
   return text;
 }
 

@@ -61,6 +61,23 @@ void check_attached(const SceneDef& scene, Config& config, const std::set<std::s
   }
 }
 
+// Reads frames a second: a number, or a fraction in words.
+FrameRate read_rate(const ConfigTable& root, const FrameRate& usual) {
+  const Range range = Range::between(1, 100000);
+  const auto given = root.text_or_number_if_given(
+      {"fps", "1/s", "frames a second; 23.976, 29.97 and 59.94 mean 24000/1001, 30000/1001 and 60000/1001"},
+      "a fraction such as \"30000/1001\"", range, "30");
+  if (!given) return usual;
+  if (const double* number = std::get_if<double>(&*given)) return *number;
+  const auto& text = std::get<std::string>(*given);
+  const std::optional<FrameRate> rate = FrameRate::parse(text);
+  if (rate && range.contains(*rate)) return *rate;
+  root.complain("fps", fmt::format("fps: '{}' must be a number or a fraction of two whole numbers, such as "
+                                   "\"30000/1001\", of {}",
+                                   text, range.text()));
+  return usual;
+}
+
 }  // namespace
 
 SceneDef read_scene(Config& config) {
@@ -71,7 +88,7 @@ SceneDef read_scene(Config& config) {
   (void)root.integer({"version", "", "of this format"}, 1, Range::between(1, 1));
   scene.title = root.text({"title", "", "for people; pictures show it where `text.title` asks for it"}, "");
   scene.frames = root.integer({"frames", "", "length of the film"}, scene.frames, Range::between(1, 1000000));
-  scene.fps = root.number({"fps", "1/s", "frames a second"}, scene.fps, Range::between(1, 100000));
+  scene.fps = read_rate(root, scene.fps);
   scene.substeps =
       root.integer({"substeps", "", "steps a frame: h = 1 / (fps substeps)"}, scene.substeps, Range::between(1, 1000));
   scene.gravity = root.vector({"gravity", "m/s^2", "acceleration of free fall"}, scene.gravity);

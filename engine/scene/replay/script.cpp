@@ -16,15 +16,15 @@ namespace supple {
 namespace {
 
 // Reads a time, given in seconds or as a frame.
-double read_time(const ConfigTable& table, double fps, const Key& seconds, const Key& frames, bool required) {
+double read_time(const ConfigTable& table, const FrameRate& fps, const Key& seconds, const Key& frames, bool required) {
   const auto in_seconds = table.number_if_given(seconds, Range::at_least(0));
-  std::optional<double> in_frames;
+  std::optional<int> in_frames;
   if (table.has(frames.name)) in_frames = table.integer(frames, std::nullopt, Range::between(0, 1000000));
   if (in_seconds && in_frames)
     table.complain(frames.name, fmt::format("either '{}' or '{}', not both", seconds.name, frames.name));
   if (required && !in_seconds && !in_frames)
     table.complain(fmt::format("when? '{}' [s] or '{}' is missing", seconds.name, frames.name));
-  return in_seconds ? *in_seconds : in_frames.value_or(0) / fps;
+  return in_seconds ? *in_seconds : fps.time_of(in_frames.value_or(0));
 }
 
 std::string object_of(const std::string& path) {
@@ -36,7 +36,7 @@ std::string object_of(const std::string& path) {
   return "";
 }
 
-std::optional<TimedChange> read_change(const ConfigTable& table, double fps) {
+std::optional<TimedChange> read_change(const ConfigTable& table, const FrameRate& fps) {
   const std::string path =
       table.text({"path", "", "the value, as --set takes it; `supple info --live SCENE` lists them"}, std::nullopt);
   const double at =

@@ -28,7 +28,7 @@ std::string scene_name(const std::filesystem::path& file, const std::filesystem:
 }
 
 // Returns a change as [[change]] has it.
-ConfigValue table_of_change(const TimedChange& change, double fps) {
+ConfigValue table_of_change(const TimedChange& change, const FrameRate& fps) {
   Config table = Config::parse("", "", "");
   const auto put = [&table](const char* key, const ConfigValue& value) { table.put(key, value, {}, {}); };
   put("frame", value_of_text(fmt::format("{}", std::lround(change.at * fps))));

@@ -1,0 +1,21 @@
+// Holds what all pages have in common: the head of the document, colours for light and dark screens and for paper,
+// tables that keys scroll and sort, and the mark of what has the focus. Not here: what only one kind of page has
+// (run_page.cpp, gallery_page.cpp, report_page.cpp).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace supple {
+
+// Returns a document up to the begin of its body. style: the page's own, after the common one. title: plain text.
+std::string page_begin(const std::string& title, std::string_view style);
+
+// Returns the scripts and the end of a document. script: the page's own.
+std::string page_end(std::string_view script);
+
+// Returns the colour of a graph's curve, as a style has it; the colours of a page on a dark screen are lighter ones.
+std::string curve_color(std::size_t number);
+constexpr std::size_t curve_colors = 8;
+
+}  // namespace supple
