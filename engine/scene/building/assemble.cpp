@@ -190,6 +190,8 @@ void set_values(Body& body, const SceneDef& scene, std::vector<Problem>& problem
   } else {
     body.description.density = def.total_mass ? *def.total_mass / body.volume : def.body_density();
     set_substances(body, problems);
+    body.description.plastic = def.plastic;
+    body.description.creep = def.creep;
   }
   if (def.pressure && !body.holds_gas) check_gas(body, problems);
 }
@@ -214,6 +216,10 @@ void update_body(Body& body, const SceneDef& scene, const BodyDef& def) {
   if (is_fabric && def.cloth->fabric->fabric.bending > 0 && body.description.fabric.bending <= 0)
     throw InputError({at(def.place, fmt::format("bend of the cloth of body '{}' cannot leave 0 while the film runs: it "
                                                 "can start from a small number",
+                                                def.name))});
+  if (def.plastic.has_value() != body.def.plastic.has_value() || def.creep.has_value() != body.def.creep.has_value())
+    throw InputError({at(def.place, fmt::format("body '{}': 'plastic' and 'creep' can change while the film runs, but "
+                                                "neither come nor go",
                                                 def.name))});
   body.def = def;
   set_values(body, scene, problems);
