@@ -27,7 +27,7 @@ class VertexMotions : public testing::Test {
   test::TemporaryFolder folder;
 
   std::filesystem::path written(const std::string& name, const std::string& bytes) const {
-    test::write_text(folder.path / name, bytes);
+    test::write_in_folder(folder.path / name, bytes);
     return folder.path / name;
   }
   static std::string refusal(const std::filesystem::path& path, const std::string& body = "") {

@@ -41,12 +41,12 @@ class DeformingColliders : public testing::Test {
 
   // Writes a surface and its motion over a second as a series of OBJ files, whose numbers are exact.
   void write(const std::string& name, const TriMesh& mesh, const Motion& motion) const {
-    test::write_text(file(name + ".obj"), test::obj_text(mesh.points, mesh.triangles));
+    test::write_in_folder(file(name + ".obj"), test::obj_text(mesh.points, mesh.triangles));
     for (int f = 0; f <= rate; ++f) {
       Positions now = mesh.points;
       for (Eigen::Index v = 0; v < now.rows(); ++v)
         now.row(v) = motion(mesh.points.row(v).transpose(), double(f) / rate).transpose();
-      test::write_text(file(fmt::format("{}_{}.obj", name, f)), test::obj_text(now, mesh.triangles));
+      test::write_in_folder(file(fmt::format("{}_{}.obj", name, f)), test::obj_text(now, mesh.triangles));
     }
   }
 

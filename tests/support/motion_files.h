@@ -14,7 +14,7 @@
 
 namespace supple::test {
 
-inline void write_text(const std::filesystem::path& path, const std::string& text) {
+inline void write_in_folder(const std::filesystem::path& path, const std::string& text) {
   std::filesystem::create_directories(path.parent_path());
   std::ofstream(path, std::ios::binary) << text;
 }

@@ -114,7 +114,10 @@ class ChunkFlow {
     if (!range_.is_arm) flow.hardened[input] += share * std::sqrt(2.0 / 3) * strains.length();
     const std::size_t field = field_of(range_, place);
     show(kept, field, model_);
-    const double before = stress_at(material, strains, 0).density, after = stress_at(material, strains, share).density;
+    double flowed[3], slope[3];
+    strains.stretches(share, flowed);
+    const double before = density_at_stretches(material, parts.s, slope),
+                 after = density_at_stretches(material, flowed, slope);
     return model_.field[field + 9 * block_width] * (before - after);
   }
 
