@@ -38,6 +38,17 @@ std::string substance_text(const Body& body) {
   return fmt::format("{} elements of {}", body.description.mesh.tets.rows(), fmt::join(names, ", "));
 }
 
+std::string flow_text(const Body& body) {
+  std::vector<std::string> parts;
+  if (const auto& plastic = body.description.plastic) {
+    parts.push_back(fmt::format("keeps strains above a stress of {:g} Pa", plastic->yield));
+    if (plastic->hardening > 0) parts.back() += fmt::format(", hardens by {:g} Pa", plastic->hardening);
+  }
+  if (const auto& creep = body.description.creep)
+    parts.push_back(fmt::format("{:g} % of the stiffness gives way in {:g} s", 100 * creep->share, creep->time));
+  return parts.empty() ? "" : fmt::format("  flow            {}\n", fmt::join(parts, "; "));
+}
+
 std::string handle_text(const Body& body, std::size_t index) {
   const Handle& handle = body.description.handles[index];
   const HandleDef& def = body.def.handles[index];
@@ -69,6 +80,7 @@ std::string body_text(const MovingBody& moving, const DrawnBody& drawn) {
         fmt::format("  elements        dihedral angles {:.1f} to {:.1f} degrees, smallest volume {:.1e} of the mean\n",
                     q.smallest_dihedral, q.largest_dihedral, q.smallest_volume);
   }
+  text += flow_text(body);
   const std::string skin = skin_text(body, drawn);
   if (!skin.empty()) text += fmt::format("  skin            {}\n", skin);
   text += fmt::format("  mass that moves {:.4g} kg\n", model.total_mass);

@@ -97,6 +97,7 @@ EarlierState state_of(const MovingBody& body) {
   earlier.x = in_input_order(model, state.x);
   earlier.v = in_input_order(model, state.v);
   earlier.time = state.time;
+  earlier.flow = state.flow;
   earlier.memory = state.memory;
   for (std::size_t h = 0; h < state.anchors.holds.size(); ++h) {
     EarlierState::Held held{
@@ -123,6 +124,11 @@ void check_fits(const Body& body, const MovingBody& there, const EarlierFrame& f
   if (now.rest.rows() != then.rest.rows() || now.tets.rows() != then.tets.rows() || now.tets != then.tets)
     refuse(
         fmt::format("it has another mesh here, with {} vertices, and had {} there", now.rest.rows(), then.rest.rows()));
+  const Flow& flow = there.state().flow;
+  if ((!flow.plastic.empty() && !body.def.plastic) || (!flow.viscous.empty() && !body.def.creep))
+    refuse("it has flowed there, and would spring back without its `plastic` or `creep`");
+  if (!flow.empty() && (flow.plastic.empty() != !body.def.plastic || flow.viscous.empty() != !body.def.creep))
+    refuse("it flows in another way here: `plastic` and `creep` neither come nor go");
   for (const HandleDef& handle : body.def.handles) {
     const bool known =
         std::ranges::find(there.body().def.handles, handle.name, &HandleDef::name) != there.body().def.handles.end();

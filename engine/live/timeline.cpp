@@ -16,7 +16,8 @@ std::size_t bytes_of(const WorldState& state) {
   std::size_t numbers = 0;
   for (const State& body : state.bodies)
     numbers +=
-        std::size_t(body.x.size() + body.v.size() + body.anchors.points.size() + body.memory.matrix_made_at.size());
+        std::size_t(body.x.size() + body.v.size() + body.anchors.points.size() + body.memory.matrix_made_at.size()) +
+        body.flow.plastic.size() + body.flow.hardened.size() + body.flow.viscous.size();
   return sizeof(double) * numbers;
 }
 

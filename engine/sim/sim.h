@@ -7,6 +7,9 @@
 //   StepInputs inputs;                       // gravity, handles' targets, colliders, settings: sim/model/inputs.h
 //   const StepReport& report = step(model, inputs, state, workspace);  // once a time step: sim/solver/workspace.h
 //
+// A body that keeps dents or creeps needs a Model that is not constant, and before each step let_flow(model, state,
+// threads, scratch) (sim/model/flow_step.h).
+//
 // inputs.targets has a row for each of model.handled, in its order: the place where that vertex is held. At rest it is
 // model.rest.row(model.handled[i].vertex); without handles the matrix stays empty.
 //
@@ -23,6 +26,7 @@
 #include "geometry/tetrahedra/tetrahedralize.h"  // meshes of shapes and boxes
 #include "sim/materials/material.h"
 #include "sim/measures/measures.h"  // stretch, penetration
+#include "sim/model/flow_step.h"
 #include "sim/model/inputs.h"
 #include "sim/model/model.h"
 #include "sim/model/report.h"

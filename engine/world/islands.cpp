@@ -13,6 +13,7 @@
 #include "sim/contact/own_surface.h"
 #include "sim/contact/part_contacts.h"
 #include "sim/model/element_view.h"
+#include "sim/model/flow_step.h"
 #include "sim/model/joined_model.h"
 #include "sim/solver/search_rule.h"
 #include "sim/solver/step.h"
@@ -76,6 +77,7 @@ Islands::Together& Islands::together(const std::vector<std::size_t>& island) {
     at = together_.insert(together_.end(), std::make_unique<Together>(models, threads_));
   }
   std::rotate(together_.begin(), at, at + 1);
+  show_flow(models, together_.front()->model);
   return *together_.front();
 }
 

@@ -2,11 +2,14 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/error.h"
+#include "base/timing.h"
 #include "base/trace.h"
 #include "scene/definition/air_of_body.h"
 #include "sim/measures/measures.h"
+#include "sim/model/flow_step.h"
 #include "sim/solver/calming.h"
 #include "sim/solver/step.h"
 
@@ -22,7 +25,9 @@ MovingBody::MovingBody(const SceneDef& scene, Body& body, Model& model, const Co
       state_(start_state(model, body)),
       workspace_(threads) {
   inputs_.colliders = &set.colliders;
+  if (!body.from) state_.time = state_.flow.until = scene.time_at_start();
   apply({.factor = hold_as_state_says(), .rule = true});
+  show_flow(state_.flow, model_);
 }
 
 MovingBody::~MovingBody() = default;
@@ -34,6 +39,8 @@ void MovingBody::apply(const ChangeCost& cost) {
   inputs_.air.clear();
   if (const std::optional<PartAir> air = air_of(scene_, body_.def)) inputs_.air.push_back(*air);
   inputs_.solver = solvers_.settings(body_.def.solver.method, body_.def.solver.settings);
+  model_.plastic = body_.description.plastic;
+  model_.creep = body_.description.creep;
   if (cost.factor) renew_model();
   if (cost.rule || cost.factor) rule_ = solvers_.rule(body_.def.solver.method, model_);
 }
@@ -41,12 +48,16 @@ void MovingBody::apply(const ChangeCost& cost) {
 void MovingBody::renew_model() {
   if (!values_) values_.emplace(model_, body_.description);
   values_->set(model_, body_.description);
+  show_flow(state_.flow, model_);
 }
 
 void MovingBody::restore(const State& state) {
   SUPPLE_CHECK(state.anchors.holds.size(), ==, body_.def.handles.size());
+  SUPPLE_CHECK(state.flow.plastic.size(), ==, state_.flow.plastic.size());
+  SUPPLE_CHECK(state.flow.viscous.size(), ==, state_.flow.viscous.size());
   state_ = state;
   if (hold_as_state_says()) apply({.factor = true});
+  show_flow(state_.flow, model_);
 }
 
 bool MovingBody::hold_as_state_says() {
@@ -102,6 +113,9 @@ void MovingBody::prepare_step(int frame, int substep) {
   span_ = {done * scene_.time_step(), (done + 1) * scene_.time_step(), substep * share, (substep + 1) * share};
   const StepSpan& span = span_;
   switch_handles(span.from);
+  const Stopwatch watch;
+  let_flow(model_, state_, workspace_.open().threads, lost_to_flow_);
+  if (model_.flows()) flow_ms_ += watch.elapsed_ms();
   targets_at(span.to, span.change_to, inputs_.targets);
   if (model_.scheme.theta < 1)
     targets_at(0.5 * (span.from + span.to), 0.5 * (span.change_from + span.change_to), inputs_.middle_targets);
@@ -132,11 +146,15 @@ void MovingBody::keep_to_clock() {
 // Returns the model of the same body with materials whose k (equation 11) is the same and that have no minimum but
 // rest.
 const Model& MovingBody::rigid_model() {
-  if (rigid_for_ == model_.id) return *rigid_;
+  if (rigid_for_ == model_.id) {
+    show_flow(state_.flow, *rigid_);
+    return *rigid_;
+  }
   BodyDescription description = body_.description;
   for (Material& material : description.materials)
     material = AsRigidAsPossible{0.5 * system_stiffness(material, description.fit).k};
   rigid_.emplace(build_model(description));
+  show_flow(state_.flow, *rigid_);
   rigid_for_ = model_.id;
   return *rigid_;
 }
@@ -155,6 +173,7 @@ void MovingBody::take_step(const Positions& x, Positions v, double time, std::ve
   w.current.contacts = std::move(contacts);
   w.current.elastic = std::numeric_limits<double>::quiet_NaN();
   w.report = std::move(report);
+  add_time(std::exchange(flow_ms_, 0.0));
   if (w.report.failed) return;
   state_.x = x;
   state_.v = std::move(v);
@@ -186,6 +205,7 @@ const StepReport& MovingBody::step() {
   untangled_ = body_.def.solver.untangle && is_tangled(model_, state_.x);
   const StepReport& report =
       untangled_ ? step_untangled() : supple::step(model_, inputs_, state_, workspace_.open(), *rule_);
+  add_time(std::exchange(flow_ms_, 0.0));
   if (!report.failed) calm_down();
   return report;
 }

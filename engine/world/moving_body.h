@@ -61,8 +61,8 @@ class MovingBody {
   // Lets a function put the targets of handles that go with something else, at a time [s] (attached_handles.h).
   void attach(std::function<void(double time, Positions& targets)> put) { put_attached_ = std::move(put); }
 
-  // Computes the inputs of a step, and lets handles grab and release when their time has come. A second call changes
-  // nothing.
+  // Computes the inputs of a step, lets handles grab and release when their time has come, and lets the body flow by
+  // what its last step has left (flow_step.h). A second call changes nothing.
   void prepare_step(int frame, int substep);
   // Makes the prepared step. The state changes only if the step succeeds. With solver.untangle, and where elements are
   // inverted or without volume at its start, the step is made with the as-rigid-as-possible material
@@ -109,6 +109,8 @@ class MovingBody {
   std::optional<Model> rigid_;         // the as-rigid-as-possible model; made when it is first needed
   std::uint64_t rigid_for_ = 0;        // id of the model that rigid_ was made for
   bool untangled_ = false, is_in_island_ = false;
+  std::vector<double> lost_to_flow_;  // scratch
+  double flow_ms_ = 0;                // of the flow before the step that was prepared
 };
 
 }  // namespace supple

@@ -240,6 +240,8 @@ box = {{}}
 material = {0}
 fibre = {{ kappa = 1 }}
 start = {{ stretch = [1, 1, 1], turn_deg = [0, 0, 0], twist_deg = 0, random = [1, 1, 1], flatten = "plane" }}
+[body.plastic]
+[body.creep]
 [body.drag]
 [body.pressure]
 [body.contact]

@@ -54,8 +54,10 @@ std::optional<ElementQuantity> element_quantity(FieldQuantity quantity) {
 }
 
 bool body_has(FieldQuantity quantity, const Body& body) {
-  // Springs have neither stress nor a volume over which energy could be spread.
-  return !body.def.cloth || (quantity != FieldQuantity::energy && quantity != FieldQuantity::stress);
+  // Springs have neither stress nor a volume over which energy could be spread. What has flowed has neither, and
+  // positions do not tell what that is.
+  return !(body.def.cloth || body.def.flows()) ||
+         (quantity != FieldQuantity::energy && quantity != FieldQuantity::stress);
 }
 
 double stiffness_of(const Body& body) { return system_stiffness(body.def.substance.material, body.def.solver.fit).k; }
@@ -170,7 +172,8 @@ SurfaceField::SurfaceField(const SceneDef& scene, const std::vector<Body>& bodie
   }
   if (reach == 0)
     throw InputError("field.quantity", fmt::format("no body of the scene has '{}': cloths have no stress and no energy "
-                                                   "density",
+                                                   "density, and where a body keeps dents or creeps they are in the "
+                                                   "fields of --vtu alone",
                                                    name_of(def_.quantity)));
   range_ = def_.range.value_or(range_to(def_.quantity, reach));
 }

@@ -38,6 +38,12 @@ void check_save_states(const std::vector<int>& frames, const SceneDef& scene, co
       return std::filesystem::exists(run / "states" / fmt::format("{}-{:06}", body.name, frame) / "state.json");
     });
   };
+  const auto flowing = std::ranges::find_if(scene.bodies, [](const BodyDef& body) { return body.flows(); });
+  if (!frames.empty() && flowing != scene.bodies.end())
+    throw InputError(
+        fmt::format("--save-state {}", frames.front()),
+        fmt::format("body '{}' keeps dents or creeps, and files of states have no room for what has flowed",
+                    flowing->name));
   for (const int frame : frames) {
     if (frame < start && !is_there(frame))
       throw InputError(fmt::format("--save-state {}", frame),

@@ -157,6 +157,7 @@ void BodyRecorder::end_frame() {
   if (row_->contact) measure_contact();
   const EnergyBalance& balance = energy_budget_.balance();
   row_->balance = {balance.total, balance.put_in, balance.from_nothing, balance.exchanged};
+  if (model().flows()) row_->balance->flowed = balance.flowed;
   if (world_.scene().output.energy) {
     const Energies& energy = energy_budget_.energies();
     row_->energy = {energy.kinetic, energy.elastic, energy.gravitational, energy.springs, energy.contact};

@@ -71,6 +71,7 @@ std::string checkpoint_bytes(const WorldState& checkpoint, const std::string& id
                               {"holds", holds},
                               {"time_s", body.time},
                               {"memory_bytes", bytes_of(body.memory).size()}});
+    if (!body.flow.empty()) head["bodies"].back()["flow_bytes"] = bytes_of(body.flow).size();
   }
   const std::string text = exact_json_text(head);
   std::string bytes(signature);
@@ -82,6 +83,7 @@ std::string checkpoint_bytes(const WorldState& checkpoint, const std::string& id
     append(bytes, body.anchors.points);
     for (const Vec3& center : body.anchors.centers) append(bytes, center.transpose());
     bytes += bytes_of(body.memory);
+    bytes += bytes_of(body.flow);
   }
   append_number(bytes, hash_text(bytes));
   return bytes;
@@ -109,6 +111,9 @@ State read_body(const Json& body, Reader& reader) {
   const std::optional<SolverMemory> memory = memory_from(reader.take(body.at("memory_bytes")), state.x.rows());
   if (!memory) reader.fail();
   state.memory = *memory;
+  std::optional<Flow> flow = flow_from(reader.take(body.value("flow_bytes", std::size_t(0))));
+  if (!flow) reader.fail();
+  state.flow = *std::move(flow);
   for (const Json& held : body.at("holds")) state.anchors.holds.push_back(held.get<bool>());
   return state;
 }

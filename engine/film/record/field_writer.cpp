@@ -49,7 +49,7 @@ void FieldWriter::add(int frame, const State& state, const OpenWorkspace& worksp
   VtuGrid grid;
   grid.points = {x.data(), std::size_t(x.size())};
   grid.point_data = {array_of("displacement", 3, displacement), array_of("velocity", 3, velocity)};
-  Floats force, stretch, von_mises;
+  Floats force, stretch, von_mises, kept;
   if (scene_.may_touch()) {
     force = as_floats(contact_forces(model_, workspace, state.x));
     grid.point_data.push_back(array_of("contact_force", 3, force));
@@ -68,6 +68,10 @@ void FieldWriter::add(int frame, const State& state, const OpenWorkspace& worksp
     grid.corners = {mesh.tets.data(), std::size_t(mesh.tets.size())};
     grid.cell_data = {array_of("stretch", 3, stretch), array_of("von_mises", 1, von_mises),
                       array_of("energy_density", 1, fields.energy)};
+  }
+  if (!state.flow.hardened.empty()) {
+    kept = as_floats(state.flow.hardened);
+    grid.cell_data.push_back(array_of("plastic_strain", 1, kept));
   }
   write_vtu(folder_.fields(body_.def.name, frame), grid);
   if (written_.empty()) find_earlier(frame);

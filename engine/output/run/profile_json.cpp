@@ -63,6 +63,7 @@ void add_energy(const BodyRow& body, Json& row) {
                    {"put_in", body.balance->put_in},
                    {"from_nothing", body.balance->from_nothing},
                    {"exchanged", body.balance->exchanged}};
+  if (body.balance->flowed) row["energy"]["lost_to_flow"] = *body.balance->flowed;
 }
 
 Json json_of(const BodyRow& body) {
@@ -168,6 +169,7 @@ BodyRow body_row(const Json& json) {
     const Json& energy = json.at("energy");
     row.balance = {energy.at("total").get<double>(), energy.at("put_in").get<double>(),
                    energy.at("from_nothing").get<double>(), energy.at("exchanged").get<double>()};
+    if (energy.contains("lost_to_flow")) row.balance->flowed = energy.at("lost_to_flow").get<double>();
   }
   read_if_there(json, "inverted", row.inverted);
   read_if_there(json, "collapsed", row.collapsed);

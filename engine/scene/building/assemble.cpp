@@ -190,6 +190,8 @@ void set_values(Body& body, const SceneDef& scene, std::vector<Problem>& problem
   } else {
     body.description.density = def.total_mass ? *def.total_mass / body.volume : def.body_density();
     set_substances(body, problems);
+    body.description.plastic = def.plastic;
+    body.description.creep = def.creep;
   }
   if (def.pressure && !body.holds_gas) check_gas(body, problems);
 }
@@ -214,6 +216,10 @@ void update_body(Body& body, const SceneDef& scene, const BodyDef& def) {
   if (is_fabric && def.cloth->fabric->fabric.bending > 0 && body.description.fabric.bending <= 0)
     throw InputError({at(def.place, fmt::format("bend of the cloth of body '{}' cannot leave 0 while the film runs: it "
                                                 "can start from a small number",
+                                                def.name))});
+  if (def.plastic.has_value() != body.def.plastic.has_value() || def.creep.has_value() != body.def.creep.has_value())
+    throw InputError({at(def.place, fmt::format("body '{}': 'plastic' and 'creep' can change while the film runs, but "
+                                                "neither come nor go",
                                                 def.name))});
   body.def = def;
   set_values(body, scene, problems);
@@ -341,7 +347,9 @@ State later_state(const Model& model, const Body& body, const EarlierState& from
     state.x.row(v) = from.x.row(model.input_of[v]);
     state.v.row(v) = from.v.row(model.input_of[v]);
   }
-  state.time = from.time;
+  state.time = state.flow.until = from.time;
+  if (from.flow.plastic.size() == state.flow.plastic.size() && from.flow.viscous.size() == state.flow.viscous.size())
+    state.flow = from.flow;
   state.anchors = rest_anchors(model, body);
   for (std::size_t h = 0; h < body.def.handles.size(); ++h)
     if (body.def.handles[h].grabs) state.anchors.holds[h] = 0;  // it takes hold in the first step, of where the body is

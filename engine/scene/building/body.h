@@ -9,6 +9,7 @@
 #include "geometry/skins/surface_colors.h"
 #include "scene/definition/keyed_motion.h"
 #include "scene/definition/scene_def.h"
+#include "sim/model/flow.h"
 #include "sim/model/model.h"
 #include "sim/model/solver_memory.h"
 
@@ -26,6 +27,7 @@ struct EarlierState {
     bool holds;
   };
   std::vector<Held> handles;
+  Flow flow;                           // the shape that it keeps
   double time = 0;                     // [s]
   std::optional<SolverMemory> memory;  // nothing where the body is another one now
 };

@@ -208,6 +208,8 @@ struct BodyDef {
   std::optional<double> density;        // [kg/m^3]; of cloth [kg/m^2]
   std::optional<double> total_mass;     // spread over the volume, or over the area of cloth [kg]
   SubstanceDef substance;               // of solids
+  std::optional<Plasticity> plastic;    // nothing: it keeps no dents
+  std::optional<Creep> creep;           // nothing: it does not creep
   StartDef start;
   StartInside start_inside = StartInside::move;
   Vec3 velocity = Vec3(0, 0, 0);         // at the start [m/s]
@@ -229,6 +231,7 @@ struct BodyDef {
   double skin_cells = 0;        // cells of the drawn skin along the longest side
   FilePlace place;
 
+  bool flows() const { return plastic || creep; }
   bool takes_colors_of_file() const { return colors == ColorSource::usual ? !color : colors == ColorSource::file; }
   double body_density() const {
     if (!cloth) return density.value_or(substance.usual_density.value_or(1000));

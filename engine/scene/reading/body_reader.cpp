@@ -372,6 +372,7 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   body.solver = defaults;
   if (const auto solver = table.table({"solver", "", "this body's own, over the scene's"}))
     body.solver = read_solver(*solver, defaults);
+  read_flow(table, body);
   body.pattern = read_pattern(table, body);
   body.pattern_size = table.number_if_given(
       {"pattern_size", "m", "edge of its squares; a sixth of the middle side, of cloth a twentieth of the longest"},

@@ -24,6 +24,9 @@ FabricDef read_fabric(const ConfigTable& owner);
 // values that it sets. Empty when no preset has this name.
 std::string preset_in_full(const std::string& name);
 
+// Reads `plastic` and `creep` into a body whose material and solver are known.
+void read_flow(const ConfigTable& table, BodyDef& body);
+
 // Reads how a surface from a file is taken: its axes and units, and what is done where it is not closed. Bodies and
 // parts of shapes have these keys in common; they are refused in tables without a `surface`.
 SurfaceOptions read_surface_options(const ConfigTable& table);

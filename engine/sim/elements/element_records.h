@@ -31,6 +31,8 @@ struct ElementRecord {
   std::int32_t input;  // index among the input's elements of this kind
   std::array<std::int32_t, most_corners> corner{};
   std::array<double, most_fields> field{};
+  // A tetrahedron that creeps is there twice: its Maxwell arm has the same corners and a share of the volume.
+  bool is_arm = false;
 };
 
 // Lists the tetrahedra first, then the springs, then the triangles; corners have the mesh's numbering.

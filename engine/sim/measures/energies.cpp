@@ -74,6 +74,7 @@ void EnergyBudget::start(const Model& model, const StepInputs& inputs, const Sta
   balance_.total = parts_.total();
   most_ = balance_.exchanged;
   moved_ = 0;
+  balance_.flowed = known_flow_ = state.flow.lost;
   lowest_ = balance_.total - balance_.put_in - balance_.from_nothing;
   model_ = model.id;
   knows_springs_ = false;
@@ -93,6 +94,10 @@ void EnergyBudget::know_springs(const Model& model, const Positions& targets, co
 void EnergyBudget::before_step(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& w) {
   Energies now = parts_;
   set_motion(model, state, inputs.gravity, now);
+  const double flowed = state.flow.lost - known_flow_;
+  now.elastic -= flowed;
+  parts_.elastic -= flowed;
+  balance_.flowed = known_flow_ = state.flow.lost;
   if (model.id != model_) now.elastic = elastic_energy(model, w, state.x);
   now.springs = spring_energy(model, inputs.targets, state.x);
   begin_air(model, inputs, state, w.air);

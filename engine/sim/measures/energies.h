@@ -26,6 +26,7 @@ struct EnergyBalance {
   // The largest sum of kinetic, elastic and springs' energy so far, and all that was put in or taken; the other values
   // are compared with it.
   double exchanged = 0;
+  double flowed = 0;  // elastic energy that was lost to flow (model/flow.h); it is missing in `total`
 };
 
 // Follows a body step by step. Damping and backward Euler itself take energy; nothing but what holds, pushes or changes
@@ -58,9 +59,10 @@ class EnergyBudget {
 
   Energies parts_;
   EnergyBalance balance_;
-  double lowest_ = 0;  // the lowest total - put_in so far
-  double most_ = 0;    // the largest sum of the parts that are never negative
-  double moved_ = 0;   // sum of all work, each as positive
+  double lowest_ = 0;      // the lowest total - put_in so far
+  double known_flow_ = 0;  // Flow::lost when parts_ was computed
+  double most_ = 0;        // the largest sum of the parts that are never negative
+  double moved_ = 0;       // sum of all work, each as positive
   std::uint64_t model_ = 0;
   bool knows_springs_ = false;  // whether parts_.springs is the springs' present energy
 };

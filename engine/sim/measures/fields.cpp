@@ -20,22 +20,26 @@ double von_mises(const Mat3& f, const Mat3& piola) {
 
 namespace {
 
-// Adds the fields of one material's elements, one by one.
+// Adds the fields of one material's elements, one by one. kirchhoff: by element, takes P F^T of elements that have a
+// Maxwell arm, together with that of the arm [Pa].
 template <class M>
 void add_tetrahedra(const Model& model, const Model::ChunkRange& range, const M& material, const Fibre* fibre,
-                    const Positions& x, ElementFields& fields) {
+                    const Positions& x, ElementFields& fields, std::vector<Mat3>& kirchhoff) {
+  const double weight = !model.creep ? 1 : range.is_arm ? model.creep->share : 1 - model.creep->share;
   for_each_element(model, range, [&](const ElementView& element) {
-    const Mat3 f = deformation_gradient(x, element);
+    const Mat3 f = deformation_gradient(x, as_flowed(model, range, element));
     Matrix3<double> at, stress;
     Mat3 piola;
     for (int i = 0; i < 9; ++i) at.m[i] = f(i / 3, i % 3);
     double density = density_of(material, at, stress);
     if (fibre != nullptr) density += add_fibre(*fibre, at, stress);
     for (int i = 0; i < 9; ++i) piola(i / 3, i % 3) = stress.m[i];
+    if (model.creep) kirchhoff[std::size_t(element.input)] += weight * piola * f.transpose();
+    fields.energy[element.input] += weight * density;
+    if (range.is_arm) return;
     const Svd3<double> parts = svd(at);
     fields.stretch.row(element.input) << parts.s[0], parts.s[1], parts.s[2];
     fields.von_mises[element.input] = von_mises(f, piola);
-    fields.energy[element.input] = density;
   });
 }
 
@@ -69,16 +73,18 @@ void add_springs(const Model& model, const Model::ChunkRange& range, const Posit
 
 ElementFields element_fields(const Model& model, const Positions& x) {
   ElementFields fields;
-  int solids = 0, triangles = 0;
+  int solids = 0, triangles = 0, arms = 0;
   for_each_element(model, [&](const ElementView& element) {
-    solids += element.kind == ElementKind::tetrahedron;
+    solids += element.kind == ElementKind::tetrahedron && !element.is_arm;
+    arms += element.is_arm;
     triangles += element.kind == ElementKind::triangle;
   });
   fields.stretch.resize(solids, 3);
   fields.von_mises.resize(solids);
-  fields.energy.resize(solids);
+  fields.energy.assign(solids, 0.0);
+  std::vector<Mat3> kirchhoff(model.creep ? std::size_t(solids) : 0, Mat3::Zero());
   fields.cloth_energy.resize(triangles);
-  if (solids + triangles < model.elements) fields.spring_energy.assign(model.vertices, 0.0);
+  if (solids + triangles + arms < model.elements) fields.spring_energy.assign(model.vertices, 0.0);
   for (std::size_t c = 0; c < model.chunks.size(); ++c) {
     const Model::ChunkRange& range = model.chunks[c];
     if (range.kind == ElementKind::spring) {
@@ -90,8 +96,16 @@ ElementFields element_fields(const Model& model, const Positions& x) {
       continue;
     }
     const Fibre* fibre = model.chunk(static_cast<int>(c)).fibre;
-    std::visit([&](const auto& material) { add_tetrahedra(model, range, material, fibre, x, fields); },
+    std::visit([&](const auto& material) { add_tetrahedra(model, range, material, fibre, x, fields, kirchhoff); },
                model.materials[range.region]);
+  }
+  for (const Model::ChunkRange& range : model.chunks) {
+    if (!range.is_arm) continue;
+    for_each_element(model, range, [&](const ElementView& element) {
+      const double volume = deformation_gradient(x, element).determinant();
+      if (volume == 0) return;  // that of the element alone is not defined either
+      fields.von_mises[element.input] = von_mises(Mat3::Identity(), kirchhoff[std::size_t(element.input)] / volume);
+    });
   }
   return fields;
 }

@@ -53,6 +53,7 @@ Deformation deformation(const Model& model, const Positions& x, Threads* threads
     const double *largest = &all_largest[std::size_t(range.first_block) * block_width],
                  *ratio = &all_ratios[std::size_t(range.first_block) * block_width];
     const bool solid = range.kind == ElementKind::tetrahedron;
+    if (range.is_arm) continue;  // its element was counted
     // The weight of a tetrahedron is its volume, of a triangle its area, of a spring its length.
     const std::size_t fields = fields_of(range.kind), weight_field = range.kind == ElementKind::spring ? 0 : fields - 1;
     for (std::size_t lane = 0; lane < lanes; ++lane) {

@@ -8,7 +8,7 @@ namespace supple {
 Tetrahedra tetrahedra_of(const Model& model) {
   std::vector<std::array<std::int32_t, 4>> rows;
   for_each_element(model, [&](const ElementView& element) {
-    if (element.kind != ElementKind::tetrahedron) return;
+    if (element.kind != ElementKind::tetrahedron || element.is_arm) return;
     rows.emplace_back();
     for (std::size_t k = 0; k < 4; ++k) rows.back()[k] = element.corner[k];
   });

@@ -219,6 +219,10 @@ Model join(const std::vector<const Model*>& bodies) {
     stiffness += bodies[p]->mean_stiffness * bodies[p]->elements;
     joined.strain_stiffness += bodies[p]->strain_stiffness;
   }
+  if (std::ranges::any_of(bodies, [](const Model* body) { return body->flows(); })) {
+    joined.present_field = joined.field;
+    joined.present_single_field = joined.single_field;
+  }
   if (!joined.fibres.empty()) joined.fibres.resize(joined.materials.size());
   joined.mean_stiffness = stiffness / joined.elements;
   join_rows(bodies, &Model::damping, joined);

@@ -13,7 +13,7 @@ namespace supple {
 // Returns the model of several bodies. Its free vertices are those of the first body, then of the second, and so on;
 // then come the held ones in the same order. Its input file, as far as vertices are numbered, is that of the first body
 // with those of the others behind it, and so are its handles and regions. The bodies must have one time step,
-// integrator and precision.
+// integrator and precision. What has flowed in them comes with show_flow() (flow_step.h).
 Model join(const std::vector<const Model*>& bodies);
 
 // Returns the vertex of a joined model that is a vertex of one of its bodies.

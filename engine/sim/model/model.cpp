@@ -89,8 +89,8 @@ void pack_chunk(Model& model, const ElementRecord* begin, const ElementRecord* e
   const std::vector<std::int32_t> list = vertices_of(begin, end);
   const int blocks = (count + block_width - 1) / block_width;
   const Model::ChunkRange chunk{
-      begin->kind,      begin->region,       model.blocks,      blocks, int(model.chunk_vertex.size()),
-      int(list.size()), model.corner.size(), model.field.size()};
+      begin->kind,      begin->region,       model.blocks,       blocks,       int(model.chunk_vertex.size()),
+      int(list.size()), model.corner.size(), model.field.size(), begin->is_arm};
   for (int i = 0; i < chunk.vertices; ++i) local[list[i]] = i;
   model.chunk_vertex.insert(model.chunk_vertex.end(), list.begin(), list.end());
   model.largest_chunk = std::max(model.largest_chunk, chunk.vertices);
@@ -122,7 +122,8 @@ void pack_elements(Model& model, const std::vector<ElementRecord>& elements) {
   for (std::size_t begin = 0; begin < elements.size();) {
     std::size_t end = begin;
     while (end < elements.size() && elements[end].kind == elements[begin].kind &&
-           elements[end].region == elements[begin].region && end - begin < blocks_a_chunk * block_width)
+           elements[end].region == elements[begin].region && elements[end].is_arm == elements[begin].is_arm &&
+           end - begin < blocks_a_chunk * block_width)
       ++end;
     pack_chunk(model, &elements[begin], elements.data() + end, local);
     begin = end;
@@ -152,8 +153,8 @@ ElementChunk Model::chunk(int index) const {
           c.vertices,
           chunk_vertex.data() + c.first_vertex,
           corner.data() + c.first_corner,
-          field.data() + c.first_field,
-          single_field.data() + c.first_field};
+          (present_field.empty() ? field : present_field).data() + c.first_field,
+          (present_field.empty() ? single_field : present_single_field).data() + c.first_field};
 }
 
 SystemTerm Model::system_term(const ElementRecord& element) const {

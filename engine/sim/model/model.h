@@ -6,6 +6,7 @@
 // vertex.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "base/names.h"
@@ -14,6 +15,7 @@
 #include "sim/elements/element_kernels.h"
 #include "sim/elements/element_records.h"
 #include "sim/materials/material.h"
+#include "sim/model/flow.h"
 #include "sim/model/system.h"
 
 namespace supple {
@@ -61,8 +63,10 @@ struct BodyDescription {
   // By vertex, the way from it at rest to the place of what is drawn that touches colliders in its stead, n x 3. Empty:
   // vertices touch colliders themselves [m]
   Positions drawn_offset;
-  double density = 1000;           // of the tetrahedra [kg/m^3]
-  std::vector<double> point_mass;  // by vertex, on top of the tetrahedra's [kg]; empty: none
+  std::optional<Plasticity> plastic;  // of the tetrahedra; nothing: they keep no dent
+  std::optional<Creep> creep;         // of the tetrahedra; nothing: they do not creep
+  double density = 1000;              // of the tetrahedra [kg/m^3]
+  std::vector<double> point_mass;     // by vertex, on top of the tetrahedra's [kg]; empty: none
   std::vector<Handle> handles;
   double time_step = 1.0 / 30;  // h [s]
   Integrator integrator = Integrator::backward_euler;
@@ -71,7 +75,7 @@ struct BodyDescription {
   Precision precision = Precision::single_precision;  // of the factor, hence of search directions
 };
 
-// Counts the elements of a body.
+// Counts the elements of a body, without Maxwell arms.
 inline std::size_t elements_of(const BodyDescription& body) {
   return std::size_t(body.mesh.tets.rows()) + body.springs.size() + body.cloth.size();
 }
@@ -131,13 +135,20 @@ struct Model : System {
   std::vector<Fabric> fabrics;
   std::vector<MembraneStiffness> fabric_stiffness;  // what stands for the fabrics in L
 
+  std::optional<Plasticity> plastic;  // of a body alone, as in its description
+  std::optional<Creep> creep;         // the same
+
   // Elements are stored in blocks of block_width; the layouts are those of ElementChunk.
   int elements = 0;
   int blocks = 0;
   std::vector<std::int32_t> element_of_lane;  // by lane: number among the input's elements of this kind; -1: padding
   std::vector<std::uint16_t> corner;
   AlignedVector<double> field;
-  AlignedVector<float> single_field;       // the same numbers in single precision
+  AlignedVector<float> single_field;  // the same numbers in single precision
+  // What the kernels take in their stead where a body flows: D_m^-1 F_p^-1 in the place of D_m^-1 (flow_step.h). Empty
+  // where nothing flows.
+  AlignedVector<double> present_field;
+  AlignedVector<float> present_single_field;
   std::vector<std::int32_t> chunk_vertex;  // all chunks' lists, one after the other
   struct ChunkRange {
     ElementKind kind;
@@ -145,6 +156,7 @@ struct Model : System {
     int first_block, blocks;
     int first_vertex, vertices;  // in chunk_vertex
     std::size_t first_corner, first_field;
+    bool is_arm = false;  // of tetrahedra: these are Maxwell arms
   };
   std::vector<ChunkRange> chunks;
   // The largest number of vertices that a chunk has. The positions of a chunk's vertices are copied into a space of its
@@ -172,6 +184,7 @@ struct Model : System {
   SparseRows damping;  // (beta/h) L [N/m]
   SparseRows bending;  // Q of bending.h, without its diagonal [N/m]
 
+  bool flows() const { return plastic.has_value() || creep.has_value(); }
   ElementChunk chunk(int index) const;
   // Returns an element's share of L, without that of fibres.
   SystemTerm system_term(const ElementRecord& element) const;

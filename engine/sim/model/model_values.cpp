@@ -18,7 +18,7 @@ void sort_elements(const Model& model, std::vector<ElementRecord>& elements) {
   }
   const auto key = [](const ElementRecord& e) {
     const auto end = e.corner.begin() + corners_of(e.kind);
-    return std::tuple(e.kind, e.region, *std::min_element(e.corner.begin(), end), e.input);
+    return std::tuple(e.kind, e.is_arm, e.region, *std::min_element(e.corner.begin(), end), e.input);
   };
   std::sort(elements.begin(), elements.end(),
             [&](const ElementRecord& a, const ElementRecord& b) { return key(a) < key(b); });
@@ -43,6 +43,38 @@ Eigen::SparseMatrix<double> pattern_of(const Model& model, const std::vector<Ele
   Eigen::SparseMatrix<double> matrix(model.vertices, model.vertices);
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
+}
+
+// Returns the elements of a body, in the numbering of its mesh. Where it creeps, the Maxwell arms of its tetrahedra
+// come last; the volume of each tetrahedron, and with it all that it adds to sums, is shared with its arm.
+std::vector<ElementRecord> records_of(const BodyDescription& body) {
+  std::vector<ElementRecord> records = element_records(body.mesh, body.springs, body.cloth);
+  if (!body.creep) return records;
+  SUPPLE_CHECK(body.springs.size() + body.cloth.size(), ==, std::size_t(0));
+  const std::size_t count = records.size();
+  for (std::size_t e = 0; e < count; ++e) {
+    ElementRecord arm = records[e];
+    arm.is_arm = true;
+    arm.field[9] *= body.creep->share;
+    records[e].field[9] *= 1 - body.creep->share;
+    records.push_back(arm);
+  }
+  return records;
+}
+
+// Writes the volumes of elements and of their arms into the packed fields.
+void set_arm_shares(Model& model, const TetMesh& mesh) {
+  if (!model.creep) return;
+  for (const Model::ChunkRange& chunk : model.chunks) {
+    const double share = chunk.is_arm ? model.creep->share : 1 - model.creep->share;
+    for (int place = 0; place < chunk.blocks * block_width; ++place) {
+      const std::size_t block = place / block_width, lane = place % block_width;
+      const std::int32_t input = model.element_of_lane[std::size_t(chunk.first_block) * block_width + place];
+      if (input < 0) continue;  // padding has no weight
+      model.field[chunk.first_field + (block * Tetrahedron::fields + 9) * block_width + lane] =
+          share * tet_volume(mesh, input);
+    }
+  }
 }
 
 // Writes the stiffness of springs into the packed fields.
@@ -130,8 +162,7 @@ std::uint64_t new_values() {
   return ++values;
 }
 
-ModelValues::ModelValues(const Model& model, const BodyDescription& body)
-    : elements_(element_records(body.mesh, body.springs, body.cloth)) {
+ModelValues::ModelValues(const Model& model, const BodyDescription& body) : elements_(records_of(body)) {
   sort_elements(model, elements_);
   if (body.fabric.bending > 0) unit_bending_ = bending_matrix(model, body.cloth);
   elastic_ = pattern_of(model, elements_, unit_bending_);
@@ -264,12 +295,20 @@ void ModelValues::set(Model& model, const BodyDescription& body) {
     model.fabrics.push_back(body.fabric);
     model.fabric_stiffness.push_back(system_stiffness(body.fabric.membrane, body.fit.start, body.fit.end));
   }
-  SUPPLE_CHECK(elements_.size(), ==, elements_of(body));
+  const std::size_t arms = body.creep ? std::size_t(body.mesh.tets.rows()) : 0;
+  SUPPLE_CHECK(elements_.size(), ==, elements_of(body) + arms);
   for (ElementRecord& element : elements_) {
     if (element.kind == ElementKind::spring) element.field[1] = body.springs[element.input].stiffness;
   }
   set_spring_fields(model, body.springs);
+  model.plastic = body.plastic;
+  model.creep = body.creep;
+  set_arm_shares(model, body.mesh);
   model.single_field.assign(model.field.begin(), model.field.end());
+  if (model.flows()) {
+    model.present_field = model.field;
+    model.present_single_field = model.single_field;
+  }
   set_masses(model, body);
   set_handle_springs(model, body);
   add_up_elastic(model);

@@ -19,7 +19,8 @@ class ModelValues {
 
   const std::vector<ElementRecord>& elements() const { return elements_; }
 
-  // Sets all that follows from the present description; numbering and packing stay. The mesh, the ends of springs, and
+  // Sets all that follows from the present description; numbering and packing stay. What has flowed is forgotten until
+  // show_flow() gives it to the model again. Whether the body creeps, the mesh, the ends of springs, and
   // the vertices and hardness of handles must be those of the description from which the model was built. Throws
   // RunError when A cannot be factored; the model must then not be used for steps.
   void set(Model& model, const BodyDescription& body);

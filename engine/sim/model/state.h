@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "sim/model/flow.h"
 #include "sim/model/solver_memory.h"
 
 namespace supple {
@@ -28,12 +29,14 @@ struct State {
   double time = 0;      // [s]
   Anchors anchors;      // may stay empty where only steps are made: they do not read them
   SolverMemory memory;  // what the body's solver remembers of earlier steps; empty: nothing
+  Flow flow;            // the shape that the body keeps, between steps changed by let_flow() (flow_step.h)
 };
 
 // Returns the state of a model that is at rest where it was built.
 State rest_state(const Model& model);
 
-// Returns the XXH64 of all positions, then all velocities, as little-endian doubles in the order of the input file.
+// Returns the XXH64 of all positions, then all velocities, as little-endian doubles in the order of the input file. The
+// lists of a flow follow where the body has one.
 std::uint64_t state_hash(const Model& model, const State& state);
 
 // Returns the rows reordered from the model's order to the input file's. Vertices are renumbered in a Model (model.h);
