@@ -7,7 +7,7 @@ namespace supple {
 namespace {
 
 std::optional<Plasticity> read_plasticity(const ConfigTable& body) {
-  const auto table = body.table({"plastic", "", "it keeps what bends it too far: dents, in solids"});
+  const auto table = body.table({"plastic", "", "a solid that keeps its dents"});
   if (!table) return std::nullopt;
   Plasticity plastic;
   plastic.yield = table->number({"yield", "Pa", "strains whose stress (von Mises) is above this are kept in part"},
@@ -21,7 +21,7 @@ std::optional<Plasticity> read_plasticity(const ConfigTable& body) {
 }
 
 std::optional<Creep> read_creep(const ConfigTable& body) {
-  const auto table = body.table({"creep", "", "it gives way slowly under a lasting load: solids"});
+  const auto table = body.table({"creep", "", "a solid that gives way slowly under a lasting load"});
   if (!table) return std::nullopt;
   Creep creep;
   creep.share = table->number({"share", "", "of the stiffness that gives way; the rest is elastic"}, 0.5,
