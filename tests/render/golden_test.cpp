@@ -377,7 +377,7 @@ TEST(Golden, WordsTellOfTheFilmAndItsBodies) {
 TEST(Golden, SubtitlesStandAtTheLowerEdge) {
   if (!std::filesystem::exists(lato)) GTEST_SKIP() << lato << " is not installed";
   const std::string subtitles =
-      "text.subtitles=[{ from = 0, to = 1, text = 'A line that is so long that each of the pictures breaks it' }]";
+      "text.subtitles=[{ from = 0, to = 1, text = 'A line that is long enough for narrow pictures to break it' }]";
   const Removal without = {{"text.subtitles=[]"}};
   expect_golden(
       "subtitles",

@@ -47,7 +47,7 @@ keys = [ { t = 1 }, { t = 0.5 } ]
 )");
   const std::vector<std::string> expected = {
       "scene.toml:1:1: unknown key 'frams'; did you mean 'frames'?",
-      "scene.toml:2:7: fps = 0: must be 1 to 100000",
+      "scene.toml:2:7: fps = 0: must be a fraction such as \"30000/1001\", or 1 to 100000",
       "scene.toml:3:11: gravity = [0, nan, 0]: must be a list of three numbers, all finite",
       "scene.toml:4:12: substeps = 1.5: must be a whole number, 1 to 1000",
       "scene.toml:6:14: iterations = 0: must be a whole number, 1 to 10000",
@@ -149,9 +149,13 @@ TEST(SceneFile, SettingsReachEveryValueByItsPath) {
             "can be set as a whole");
   EXPECT_EQ(refused("solver.iteration=5"),
             "--set solver.iteration=5: unknown key 'iteration'; did you mean 'iterations'?");
-  EXPECT_EQ(refused("fps=-3"), "--set fps=-3: fps = -3: must be 1 to 100000");
+  EXPECT_EQ(refused("fps=-3"), "--set fps=-3: fps = -3: must be a fraction such as \"30000/1001\", or 1 to 100000");
   EXPECT_EQ(refused("fps=1e400"),
-            "--set fps=1e400: fps = '1e400': must be a number, 1 to 100000 (beyond what a number holds)");
+            "--set fps=1e400: fps: '1e400' must be a number or a fraction of two whole numbers, such as "
+            "\"30000/1001\", of 1 to 100000");
+  EXPECT_EQ(
+      refused("look.exposure=1e400"),
+      "--set look.exposure=1e400: exposure = '1e400': must be a number, above 0 to 100 (beyond what a number holds)");
 }
 
 // Returns why bodies cannot be made from a scene that reads well; empty when they can.
@@ -272,6 +276,7 @@ keys = [{{ t = 0 }}]
 [look]
 [field]
 [text]
+subtitles = [{{ from = 0, to = 1, text = "a line" }}]
 [output]
 [wind]
 [from]
