@@ -44,6 +44,7 @@ struct Seen {
   int material;            // its mesh's first texel
   int covering;            // the layer that covers all of the triangle, or zero
   uint bordering;          // layers above that one whose borders may run through it, by bit
+  float pixel;             // width of a pixel at its place, across the line of sight [m]
   vec3 weights;            // of the corners
   vec3 right, up;          // how the weights change to the next pixel
   vec3 world, normal;
@@ -74,6 +75,7 @@ Seen look(uint number, vec2 at) {
   float far = max(max(abs(off.x), abs(off.y)), abs(off.z));
   weights = far < 1e6 ? 1.0 / 3.0 + off / max(far, 1.0) : vec3(1.0 / 3.0);  // the plane of a sliver may be no plane
   seen.weights = weights;
+  seen.pixel = length(ray_right) / length(ray) * length(from_eye);
   seen.world = weights.x * a.xyz + weights.y * b.xyz + weights.z * c.xyz;
   seen.open = dot(weights, vec3(a.w, b.w, c.w));
   seen.normal = normalize(weights.x * texelFetch(normals, seen.corners.x).xyz + weights.y * texelFetch(normals, seen.corners.y).xyz +
@@ -110,6 +112,9 @@ vec3 color_of_file(Seen seen) {
 }
 #endif
 
+// The way on a surface from one pixel to the next, over a pixel's width, where it is seen at a slant of some 83 degrees.
+const float most_slanted = 8.0;
+
 vec4 material_of(Seen seen) {
   vec4 material = texelFetch(materials, seen.material + seen.covering);
 #ifdef COLORED
@@ -121,8 +126,13 @@ vec4 material_of(Seen seen) {
     int layer = left == 0u ? 0 : int(log2(float(left & (~left + 1u))) + 0.5);
     float a = texelFetch(paint, 8 * seen.corners.x + layer).r, b = texelFetch(paint, 8 * seen.corners.y + layer).r;
     vec3 d = vec3(a, b, texelFetch(paint, 8 * seen.corners.z + layer).r);
-    float width = max(texelFetch(materials, seen.material + 9 + layer).r, 1.2 * (abs(dot(seen.right, d)) + abs(dot(seen.up, d))));
-    float cover = 1.0 - smoothstep(-0.5 * width, 0.5 * width, dot(seen.weights, d));
+    // The weights of a triangle that has next to no area are wild. A distance changes by no more than the way on the surface,
+    // and within a pixel of the triangle it is nearly one of the corners'.
+    float change = min(abs(dot(seen.right, d)) + abs(dot(seen.up, d)), most_slanted * seen.pixel);
+    float width = max(texelFetch(materials, seen.material + 9 + layer).r, 1.2 * change);
+    float beyond = min(change, 2.0 * seen.pixel);
+    float nearest = min(d.x, min(d.y, d.z)) - beyond, furthest = max(d.x, max(d.y, d.z)) + beyond;
+    float cover = 1.0 - smoothstep(-0.5 * width, 0.5 * width, clamp(dot(seen.weights, d), nearest, furthest));
     material = mix(material, texelFetch(materials, seen.material + 1 + layer), left == 0u ? 0.0 : cover);
     left &= left - 1u;
   } while (left != 0u);

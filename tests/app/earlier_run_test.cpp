@@ -18,8 +18,8 @@ using test::run;
 
 constexpr int frames = 24, last_before = 9;
 
-// Holds a run of a bar that a handle turns above a moving ball, whose stiffness and gravity a replay changes, with a
-// checkpoint after a few frames.
+// Holds a run of a bar that a handle turns, and of a ball that keeps dents, above a moving stone; a replay changes
+// stiffness and gravity, and there is a checkpoint after a few frames.
 class EarlierRun : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -40,6 +40,7 @@ name = "ball"
 box = { extent = [0.1, 0.1, 0.1], cells = [2, 2, 2] }
 position = [0.1, 0.5, 0]
 material = { model = "neo-hookean", mu = 2e4, lambda = 4e4 }
+plastic = { yield = 300, hardening = 1e3 }
 [[collider]]
 name = "stone"
 shape = { sphere = { radius = 0.1 } }

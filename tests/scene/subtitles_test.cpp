@@ -56,8 +56,8 @@ subtitles = [{ from = 1, to = 2, text = "second" }, { from = 0, to = 1.5, text =
 
 // A subtitle is in as many pictures as its time has, the first of which a player shows when it begins.
 TEST(Subtitles, LastAsManyPicturesAsTheirTime) {
-  const FrameRate rate = *FrameRate::parse("30000/1001");
-  const SceneDef scene = scene_of("[text]\nsubtitles = [{ from = 1.001, to = 2.002, text = \"x\" }]\n");
+  SceneDef scene = scene_of("[text]\nsubtitles = [{ from = 1.001, to = 2.002, text = \"x\" }]\n");
+  scene.fps = *FrameRate::parse("30000/1001");
   std::vector<int> shown;
   for (int frame = 0; frame < 90; ++frame)
     if (!subtitle_text(scene.text, scene.time_after(frame)).empty()) shown.push_back(frame);
