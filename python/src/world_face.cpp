@@ -70,6 +70,11 @@ WorldFace::WorldFace(const py::object& source, const py::dict& set, int threads)
   for (const std::string& text : warnings_) warn(text);
 }
 
+double WorldFace::time() {
+  const Lock held = locked();
+  return held->world.scene().time_after(held->world.frames() - 1);
+}
+
 WorldFace::~WorldFace() {
   if (getpid() == process_) return;
   (void)held_.release();  // its threads are in the process that made it

@@ -39,7 +39,7 @@ class WorldFace {
 
   void step(int frames, bool errors);
   int frame();
-  double time() { return frame() / fps(); }
+  double time();
   double fps() { return locked()->world.scene().fps; }
   py::dict report();
   py::dict error();

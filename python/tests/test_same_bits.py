@@ -28,6 +28,15 @@ def test_a_replay_has_the_hashes_of_its_film(hashes_of):
     assert hashes(supple.World("ear-pull"), frames) == hashes_of("replay", "ear-pull", "--frames", str(frames))
 
 
+def test_a_world_goes_on_from_a_run_with_its_bits_and_its_clock(hashes_of, tmp_path):
+    film = hashes_of("replay", "ear-pull", "--frames", "40")
+    with pytest.warns(supple.SuppleWarning, match="goes on after frame 29"):
+        world = supple.World("ear-pull", set={"from.run": str(tmp_path / "film"), "from.frame": 29})
+    assert world.frame == 0 and world.time == 1
+    assert hashes(world, 10) == film[30:]
+    assert world.time == pytest.approx(4 / 3)
+
+
 def test_settings_have_the_meaning_of_the_command_line(hashes_of):
     world = supple.World("blob", set={"body.blob.material": {"model": "neo-hookean", "mu": 30, "lambda": 25},
                                       "solver.iterations": 7}, threads=1)

@@ -86,6 +86,7 @@ TEST(Support, CornersOfClothHavePinsAndEdgesRods) {
 
 TEST(Support, ARimOfClothHasPinsBecauseAClampWouldHideTheCloth) {
   Body rim = body_of(cloth + handle("lower", "{ box = [[0, 0, 0], [1, 0, 1]] }"));
+  rim.def.handles.emplace_back().name = "rim";
   rim.description.handles.push_back({"rim", {}});
   for (std::int32_t v = 0; v < 121; ++v) {  // three sides of the grid
     if (v % 11 == 0 || v % 11 == 10 || v / 11 == 10) rim.description.handles[1].vertices.push_back(v);
@@ -97,6 +98,13 @@ TEST(Support, ARimOfClothHasPinsBecauseAClampWouldHideTheCloth) {
       EXPECT_LT(bounds_of(one.surface.points).diagonal(), 0.08);
     }
   }
+}
+
+TEST(Support, WhatSomethingElseCarriesHasNone) {
+  Body rim = body_of(cloth + handle("lower", "{ box = [[0, 0, 0], [1, 0, 1]] }"));
+  ASSERT_FALSE(supports_of(rim).empty());
+  rim.def.handles.front().attach = AttachDef{"hand", "", {}};
+  EXPECT_TRUE(supports_of(rim).empty());
 }
 
 TEST(Support, ASmallPartOfAFigureHasAPinThatStandsOutOfItsSkin) {
