@@ -64,6 +64,7 @@ for (const film of document.querySelectorAll("video")) {
     const last = Math.round(film.duration * rate) - 1;
     byHand = false;
     film.pause();
+    film.loop = false;  // one that loops would begin again at its end, even while it stands
     film.currentTime = (Math.min(last, Math.max(0, frame(Math.floor(film.currentTime * rate + 1e-6), last))) + 0.5) / rate;
   };
   const keys = {
@@ -71,7 +72,7 @@ for (const film of document.querySelectorAll("video")) {
     ArrowLeft: () => seek(now => now - 1), ArrowRight: () => seek(now => now + 1),
   };
   if (still) film.poster = still.src;
-  film.addEventListener("play", () => view.classList.add("playing"));
+  film.addEventListener("play", () => { film.loop = true; view.classList.add("playing"); });
   film.addEventListener("pause", () => view.classList.remove("playing"));
   film.addEventListener("pointerenter", event => { if (event.pointerType === "mouse" && film.paused) film.play(); });
   film.addEventListener("pointerleave", event => { if (event.pointerType === "mouse" && !byHand) film.pause(); });

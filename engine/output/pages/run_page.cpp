@@ -90,7 +90,8 @@ function show(frame) {
 }
 function seek(frame) {
   const to = Math.min(last, Math.max(0, frame));
-  if (film) { film.pause(); film.currentTime = (to + 0.5) / data.rate; }
+  // A film that is at its end begins again where it loops, even while it stands: so it loops only while it plays.
+  if (film) { film.pause(); film.loop = false; film.currentTime = (to + 0.5) / data.rate; }
   show(to);
 }
 for (const area of areas) {
@@ -126,6 +127,7 @@ function follow() {
   if (film && !film.paused) show(Math.floor(film.currentTime * data.rate + 1e-6));
   requestAnimationFrame(follow);
 }
+if (film) film.addEventListener("play", () => { film.loop = true; });
 if (film) film.addEventListener("seeked", () => { if (film.paused) show(Math.floor(film.currentTime * data.rate + 1e-6)); });
 window.addEventListener("beforeprint", () => {
   if (!film || !still || film.readyState < 2) return;
