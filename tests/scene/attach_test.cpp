@@ -136,7 +136,7 @@ TEST(SurfaceBinding, PointsTurnAndStretchWithTheirTriangles) {
   const Eigen::RowVector3d move(1, -2, 3);
   const Positions turned = (surface.points * turn.transpose()).rowwise() + move;
   EXPECT_LT((binding.points_at(turned) - ((points * turn.transpose()).rowwise() + move)).cwiseAbs().maxCoeff(), 1e-14);
-  // Where the surface is twice as large, places on it move apart and heights above it stay.
+  // A surface that grows to twice its size moves the places on it apart, and keeps the heights above it.
   EXPECT_LT((binding.points_at(2 * surface.points).row(0) - Eigen::RowVector3d(0.4, 0.6, 0.5)).norm(), 1e-15);
 }
 

@@ -145,8 +145,8 @@ struct Model : System {
   std::vector<std::uint16_t> corner;
   AlignedVector<double> field;
   AlignedVector<float> single_field;  // the same numbers in single precision
-  // What the kernels take in their stead where a body flows: D_m^-1 F_p^-1 in the place of D_m^-1 (flow_step.h). Empty
-  // where nothing flows.
+  // Where a body flows, the kernels read these two lists instead, which hold D_m^-1 F_p^-1 in the place of D_m^-1
+  // (flow_step.h). They are empty where nothing flows.
   AlignedVector<double> present_field;
   AlignedVector<float> present_single_field;
   std::vector<std::int32_t> chunk_vertex;  // all chunks' lists, one after the other
