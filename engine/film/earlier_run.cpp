@@ -114,16 +114,21 @@ EarlierState state_of(const MovingBody& body) {
   return earlier;
 }
 
+bool have_same_mesh(const Body& a, const Body& b) {
+  const auto same = [](const auto& one, const auto& other) { return one.rows() == other.rows() && one == other; };
+  return a.description.mesh.rest.rows() == b.description.mesh.rest.rows() &&
+         same(a.description.mesh.tets, b.description.mesh.tets) && same(surface_of(a), surface_of(b));
+}
+
 // Refuses what the state cannot be carried over to.
 void check_fits(const Body& body, const MovingBody& there, const EarlierFrame& from) {
   const auto refuse = [&](const std::string& why) {
     throw InputError(
         {{from.place, fmt::format("body '{}' cannot go on from {}: {}", body.def.name, from.run.string(), why)}});
   };
-  const TetMesh &now = body.description.mesh, &then = there.body().description.mesh;
-  if (now.rest.rows() != then.rest.rows() || now.tets.rows() != then.tets.rows() || now.tets != then.tets)
-    refuse(
-        fmt::format("it has another mesh here, with {} vertices, and had {} there", now.rest.rows(), then.rest.rows()));
+  if (!have_same_mesh(body, there.body()))
+    refuse(fmt::format("it has another mesh here, with {} vertices, and had {} there",
+                       body.description.mesh.rest.rows(), there.body().description.mesh.rest.rows()));
   const Flow& flow = there.state().flow;
   if ((!flow.plastic.empty() && !body.def.plastic) || (!flow.viscous.empty() && !body.def.creep))
     refuse("it has flowed there, and would spring back without its `plastic` or `creep`");

@@ -191,6 +191,14 @@ material = { model = "neo-hookean", mu = 2e4, lambda = 4e4 }
   std::ofstream(path("free.toml"), std::ios::app) << "density = 300\n";
   const Result changed = render("free.toml");
   EXPECT_NE(changed.err.find("density is 300 here and was"), std::string::npos) << changed.err;
+  // The second cloth has as many vertices as the first, and other triangles.
+  const std::string cloth = "[[body]]\nname = \"sheet\"\ncloth = { extent = [1, 1], stretch = 100, cells = ";
+  std::ofstream(path("square.toml")) << "frames = 2\n" << cloth << "[8, 8] }\n";
+  std::ofstream(path("strip.toml")) << "frames = 2\n" << cloth << "[2, 26] }\n";
+  ASSERT_EQ(run(folder(), {"render", "square.toml", "--out", "square", "--no-images"}).status, 0);
+  const Result other =
+      run(folder(), {"render", "strip.toml", "--out", "refused", "--no-images", "--from", "square", "--frame", "1"});
+  EXPECT_NE(other.err.find("body 'sheet' cannot go on from"), std::string::npos) << other.err;
   EXPECT_FALSE(std::filesystem::exists(path("refused")));
 }
 
