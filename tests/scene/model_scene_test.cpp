@@ -71,6 +71,11 @@ TEST(Upright, IsTheAxisOnWhichItStandsWhereItWouldToppleOnTheUsualOne) {
   const Upright found = guess_upright("a.ply", pyramid);
   EXPECT_EQ(found.up, UpAxis::z);
   EXPECT_NE(found.reason.find("would topple with y up"), std::string::npos) << found.reason;
+  // A foot below its middle keeps it from toppling until the first jolt.
+  const TriMesh wobbly = together(pyramid, moved(box_surface({0.05, 0.05, 0.05}), {0, -0.95, -0.52}));
+  EXPECT_GT(steadiness(wobbly, UpAxis::y), 0);
+  EXPECT_LT(steadiness(wobbly, UpAxis::y), 0.03);
+  EXPECT_EQ(guess_upright("a.ply", wobbly).up, UpAxis::z);
 }
 
 TEST(Sagging, OfAColumnIsThatOfItsWeight) {

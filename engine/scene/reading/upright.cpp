@@ -13,6 +13,7 @@ namespace {
 
 constexpr double far_taller = 1.5;  // times each of the other two extents
 constexpr double steady = 0.12;     // a solid that stands as well as this hardly does so by chance
+constexpr double wobbly = 0.03;     // a solid that stands no better than this falls at the first jolt
 constexpr double sturdy = 0.15;     // what stands like this on wheels or legs is no tower that lies on its side
 
 Vec3 center_of_mass(const TriMesh& surface) {
@@ -86,7 +87,7 @@ Upright guess_upright(const std::filesystem::path& file, const TriMesh& surface)
         steadiness(surface, up) > steady)
       return {up, fmt::format("the model is {:.2g} times as long along it as across, and stands", extent[k] / rest)};
   }
-  if (steadiness(surface, usual) < 0 && steadiness(surface, other) > steady)
+  if (steadiness(surface, usual) < wobbly && steadiness(surface, other) > steady)
     return {other, fmt::format("the model stands on it, and would topple with {} up", name_of(usual))};
   return {usual, usual == UpAxis::z ? "files of this kind usually have it so" : ""};
 }
