@@ -195,7 +195,7 @@ std::vector<std::string> go_on_from_run(const FilmPlan& plan, const Solvers& sol
   if (!from) return {};
   const Zone zone("earlier run");
   const Stopwatch watch;
-  if (plan.preview || plan.rough)
+  if (plan.preview || plan.rough > 0)
     throw InputError({{from->place, "a preview has other meshes than the run, and cannot go on from it"}});
   const RunRecord run = run_with_frame(*from);
   LoadedFilm film = film_of_run(run, plan, solvers);

@@ -11,8 +11,21 @@
 namespace supple {
 namespace {
 
-constexpr PassEffort whole_film = {std::numeric_limits<long long>::max(), false, true};
 constexpr PassEffort few_seconds = {400'000, true, true};
+
+// Returns the effort for a whole film. The coarsest meshes roll and bounce elsewhere than the film's own, so that the
+// pass has as fine ones as it can play in about a second.
+PassEffort whole_film(const World& world) {
+  constexpr double vertex_steps = 120'000;
+  constexpr double nearly_all = 0.5;  // of the vertices: the film's own meshes then cost little more, and are made
+  PassEffort effort{std::numeric_limits<long long>::max(), false, true};
+  double steps = 0;
+  for (const Body& body : world.bodies())
+    steps += static_cast<double>(body.description.mesh.rest.rows()) * world.scene().frames * world.scene().substeps;
+  const double share = vertex_steps / std::max(1.0, steps);
+  effort.share = share < nearly_all ? std::max(effort.share, share) : 1;
+  return effort;
+}
 
 bool changes_camera_at_all(const Script& script) {
   for (int frame = 0; frame < script.scene().frames; ++frame) {
@@ -52,7 +65,7 @@ std::string find_framing(const FilmPlan& plan, const FilmStart& start, const Fil
     if (!asked || !film.info.framed.empty()) return "";
   }
   const Stopwatch watch;
-  const RoughPass pass = rough_pass(plan, solvers, asked ? whole_film : few_seconds);
+  const RoughPass pass = rough_pass(plan, solvers, asked ? whole_film(film.world) : few_seconds);
   if (pass.motion.empty()) return "";  // the film itself will say why its first step fails
   if (!asked) {
     DrawnFilm drawn = drawn_pass(pass);

@@ -12,9 +12,10 @@ namespace {
 
 constexpr int quick_iterations = 4;
 
-FilmPlan rough_plan(const FilmPlan& plan) {
+FilmPlan rough_plan(const FilmPlan& plan, double share) {
   FilmPlan rough = plan;
-  rough.rough = rough.quiet = true;
+  rough.rough = share;
+  rough.quiet = true;
   // The pass draws nothing that needs another run (a field's reference, a ghost) and no supports: it looks at bodies
   // alone.
   for (const char* setting : {"field.quantity=none", "field.reference=", "look.ghost=", "look.supports=false"})
@@ -52,11 +53,11 @@ FramePositions positions_at_start(const World& world) {
 }
 
 // Loads the scene with coarse meshes, or with its own where bodies go on from another run, which has these.
-LoadedFilm film_of_pass(const FilmPlan& plan, const FilmSolvers& solvers) {
-  FilmPlan rough = rough_plan(plan);
+LoadedFilm film_of_pass(const FilmPlan& plan, const FilmSolvers& solvers, double share) {
+  FilmPlan rough = rough_plan(plan, share);
   LoadedFilm film = load_film(rough, {});
   if (!film.world.script().scene().from) return film;
-  rough.rough = false;
+  rough.rough = 0;
   LoadedFilm whole = load_film(rough, {});
   (void)go_on_from_run(rough, solvers.steps, whole.world);
   return whole;
@@ -66,7 +67,7 @@ LoadedFilm film_of_pass(const FilmPlan& plan, const FilmSolvers& solvers) {
 
 RoughPass rough_pass(const FilmPlan& plan, const FilmSolvers& solvers, const PassEffort& effort) {
   const Zone zone("first pass");
-  RoughPass pass{film_of_pass(plan, solvers), {}, 0, plan.cache ? UserCache::of_user() : UserCache()};
+  RoughPass pass{film_of_pass(plan, solvers, effort.share), {}, 0, plan.cache ? UserCache::of_user() : UserCache()};
   const World& world = pass.film.world;
   const int wanted = frames_of_pass(pass.film, effort);
   if (wanted == 0) {

@@ -1,4 +1,4 @@
-// Plays a film before it is made, with meshes as coarse as can be, to learn where its bodies go. Not here: what is told
+// Plays a film before it is made, with coarse meshes, to learn where its bodies go. Not here: what is told
 // of the pictures (rough_pictures.h), and what the camera frames (rough_motion.h).
 #pragma once
 
@@ -15,6 +15,7 @@ struct PassEffort {
   long long most_vertex_steps;  // over all bodies, frames and substeps; 120,000 take about a second
   bool is_quick;                // few iterations, whatever the scene asks for
   bool follows_changes;         // of a replay; otherwise the pass ends before the first one
+  double share = 0.06;          // of their vertices that solids keep; the least: as coarse as can be; 1: the film's own
 };
 
 using FramePositions = std::vector<Positions>;  // by body: the positions of its mesh, n x 3 [m]

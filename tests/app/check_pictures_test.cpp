@@ -1,4 +1,4 @@
-// Tests what `supple check` says of pictures that will miss a body.
+// Tests what `supple check` says of pictures that will miss a body, and what the first pass of a film has them show.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -7,6 +7,7 @@
 #include "app/solvers.h"
 #include "film/plan/shipped_files.h"
 #include "film/rough_pictures.h"
+#include "output/motion/point_cache.h"
 #include "support/bodies.h"
 #include "support/program.h"
 
@@ -131,6 +132,34 @@ TEST(CheckPictures, OfAllScenesThatShipShowTheirBodies) {
     for (const std::string& warning : missing_in_rough_pictures(plan, all_solvers()))
       ADD_FAILURE() << name << ": " << warning;
   }
+}
+
+// Coarse cubes would roll to other places.
+TEST(CheckPictures, FrameTheFilmsOwnMotionWhereTheFirstPassCanAffordItsMeshes) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path / "thrown.toml") << R"(frames = 40
+[[body]]
+name = "cube"
+box = { extent = [0.2, 0.2, 0.2], cells = [5, 5, 5] }
+position = [0, 0.3, 0]
+velocity = [1.5, 0, 0]
+spin_deg = [30, 0, -300]
+material = "jelly"
+[[collider]]
+shape = { half_space = { normal = [0, 1, 0] } }
+friction = 0.6
+[camera]
+frames = "film"
+)";
+  ASSERT_EQ(run(folder.path, {"render", "thrown.toml", "--quiet", "--no-video", "--size", "64x36"}).status, 0);
+  const auto framed = nlohmann::json::parse(test::read_file(folder.path / "out" / "thrown" / "run.json"))["framed"];
+  double farthest = -1e9;
+  for (const auto& point : framed) farthest = std::max(farthest, point[0].get<double>());
+  PointCacheReader motion(folder.path / "out" / "thrown" / "motion" / "cube.pc2");
+  double reached = -1e9;
+  for (int frame = 0; frame < motion.frames(); ++frame)
+    reached = std::max(reached, motion.frame(frame).col(0).maxCoeff());
+  EXPECT_NEAR(farthest, reached, 0.03 * reached) << "2 % of air beside what the film itself reaches";
 }
 
 }  // namespace check_pictures_test

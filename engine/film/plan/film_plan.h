@@ -45,7 +45,7 @@ struct FilmPlan {
   bool film_only = false;  // no files of the frames and no checkpoints; only with a video
   FilmCoding coding;       // of the video
   bool stills = false;     // a poster and a sheet of pictures, where there are files of the frames
-  bool rough = false;      // meshes as coarse as can be: the first pass of a film (film/rough_motion.h)
+  double rough = 0;        // share of their vertices that a solid keeps in the first pass of a film (film/rough_pass.h)
   bool preview = false;    // a quarter of the size, every other frame, coarse meshes (film/plan/preview.h)
   GlChoice gl = GlChoice::automatic;
   int error_every = 0;           // measure the error of equation 12 every so many frames; 0: never

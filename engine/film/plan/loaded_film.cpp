@@ -123,7 +123,8 @@ LoadedFilm load_coarse(const FilmPlan& plan, const std::vector<std::string>& set
     for (std::string& setting : preview_settings(scene, share)) all.push_back(std::move(setting));
     return all;
   };
-  for (const double share : plan.rough ? std::vector{0.06, 0.25, 0.5} : std::vector{0.25, 0.5}) {
+  for (const double share : {plan.rough, 0.25, 0.5}) {
+    if (share < plan.rough || share <= 0) continue;
     try {
       return film_with(plan, with(share), command);
     } catch (const InputError&) {  // the last attempt says what is wrong
@@ -167,7 +168,7 @@ LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& comma
   if (!plan.size.empty()) settings.push_back(size_setting(plan.size, plan.settings));
   if (plan.frames > 0) settings.push_back(fmt::format("frames={}", plan.frames));
   if (plan.seed >= 0) settings.push_back(fmt::format("seed={}", plan.seed));
-  return plan.preview || plan.rough ? load_coarse(plan, settings, command) : film_with(plan, settings, command);
+  return plan.preview || plan.rough > 0 ? load_coarse(plan, settings, command) : film_with(plan, settings, command);
 }
 
 void build_models(const FilmPlan& plan, LoadedFilm& film) {
