@@ -28,11 +28,11 @@ def rest_shape():
     at = lambda ring, i: 1 + ring * AROUND + i % AROUND
     triangles = []
     for i in range(AROUND):
-        triangles.append((0, at(0, i), at(0, i + 1)))
-        triangles.append((last, at(RINGS - 2, i + 1), at(RINGS - 2, i)))
+        triangles.append((0, at(0, i + 1), at(0, i)))
+        triangles.append((last, at(RINGS - 2, i), at(RINGS - 2, i + 1)))
         for ring in range(RINGS - 2):
-            triangles.append((at(ring, i), at(ring + 1, i), at(ring, i + 1)))
-            triangles.append((at(ring, i + 1), at(ring + 1, i), at(ring + 1, i + 1)))
+            triangles.append((at(ring, i), at(ring, i + 1), at(ring + 1, i)))
+            triangles.append((at(ring, i + 1), at(ring + 1, i + 1), at(ring + 1, i)))
     return points, triangles
 
 
