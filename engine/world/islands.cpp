@@ -117,11 +117,13 @@ StepInputs Islands::inputs_of(const std::vector<std::size_t>& island, const Selv
 
 namespace {
 
-// Returns what a step of several bodies was for one of them: times by its share of the vertices, forces and contacts of
-// its own; iterations, energies and errors are those of all.
-StepReport report_of_part(const Model& joined, const Part& part, const StepReport& all,
+// Returns what a step of several bodies was for one of them: times by its share of the vertices, forces, contacts and
+// the estimated error of motion of its own; iterations, energies and the error of equation 12 are those of all.
+StepReport report_of_part(const Model& joined, std::size_t number, const StepReport& all,
                           const std::vector<Contact>& contacts, const Positions& x) {
+  const Part& part = joined.parts[number];
   StepReport report = all;
+  if (!all.motion_estimates.empty()) report.motion_estimate = all.motion_estimates[number];
   const double share = static_cast<double>(part.free) / joined.free;
   for (double* time : {&report.step_ms, &report.evaluate_ms, &report.solve_ms, &report.lbfgs_ms, &report.collide_ms,
                        &report.matrix_ms, &report.other_ms, &report.start_ms})
@@ -338,7 +340,7 @@ int Islands::step_together(const std::vector<std::size_t>& island, const Selves&
     const Part& part = model.parts[p];
     const Positions x = rows_of(part, w.current.x);
     const std::vector<Contact> contacts = contacts_of_part(model, part, w.current.contacts, w.current.x);
-    StepReport own = report_of_part(model, part, report, contacts, x);
+    StepReport own = report_of_part(model, p, report, contacts, x);
     const int vertex = report.failure.vertex - first_input;
     if (report.failed && vertex >= 0 && vertex < part.free + part.held) {
       failed = static_cast<int>(island[p]);

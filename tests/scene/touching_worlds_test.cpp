@@ -2,6 +2,7 @@
 // same bits however the film is made.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/bench/linked_rings.h"
@@ -74,6 +75,20 @@ double most_apart(double speed, int substeps, int frames) {
 TEST(TouchingWorlds, TwoCubesThatMeetHeadOnAreEachOthersWall) {
   for (const int substeps : {1, 2, 4}) EXPECT_LT(most_apart(2, substeps, 60), 0.01) << substeps;
   for (const int substeps : {2, 4}) EXPECT_LT(most_apart(8, substeps, 3), 0.05) << substeps;
+}
+
+// The left cube turns over while it pushes the right one, whose way is straight.
+TEST(TouchingWorlds, EachBodySaysHowFarItIsFromItsOwnSolution) {
+  Played played(no_gravity + cube("left", -0.25, 3, "spin_deg = [0, 400, 900]") + cube("right", 0.05, 0));
+  bool differ = false;
+  for (int frame = 0; frame < 6; ++frame) {
+    played.play(frame, frame + 1);
+    const StepReport &left = played.world.body(0).report(), &right = played.world.body(1).report();
+    if (left.error_estimate == 0 || left.error_estimate != right.error_estimate) continue;  // two steps
+    EXPECT_EQ(std::max(left.motion_estimate, right.motion_estimate), *std::ranges::max_element(left.motion_estimates));
+    differ = differ || left.motion_estimate != right.motion_estimate;
+  }
+  EXPECT_TRUE(differ);
 }
 
 TEST(TouchingWorlds, MomentumIsKept) {

@@ -220,6 +220,13 @@ TEST(JoinedMotionError, IsTheLargestOfItsMembers) {
   const Positions d = all(ahead).topRows(bodies.joined.free);
   EXPECT_NEAR(estimated_motion_error(bodies.joined, all(q), all(y), all(x), d, 2), worst_estimate,
               1e-12 * worst_estimate);
+  const std::vector<double> own = estimated_motion_errors(bodies.joined, all(q), all(y), all(x), d, 2);
+  ASSERT_EQ(own.size(), q.size());
+  for (std::size_t p = 0; p < q.size(); ++p) {
+    const Model& member = bodies.members[p];
+    const double alone = estimated_motion_error(member, q[p], y[p], x[p], ahead[p].topRows(member.free), 2);
+    EXPECT_NEAR(own[p], alone, 1e-12 * alone) << p;
+  }
 }
 
 // Two cubes lie on the two sides of a thick wall, deep inside it. Each leaves by its own side.

@@ -44,6 +44,11 @@ double motion_error_of(const Model& model, const Part& part, const Positions& q,
   return mass_distance(model, part, x, solved) / own_motion(model, part, q, y, solved);
 }
 
+double estimated_of(const Model& model, const Part& part, const Positions& q, const Positions& y, const Positions& x,
+                    const Positions& d, double times) {
+  return times * mass_length(model, part, d) / own_motion(model, part, q, y, x);
+}
+
 }  // namespace
 
 double motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,
@@ -60,8 +65,14 @@ std::vector<double> motion_errors(const Model& model, const Positions& q, const 
 
 double estimated_motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,
                               const Positions& d, double times) {
-  return largest_error(
-      model, [&](const Part& part) { return times * mass_length(model, part, d) / own_motion(model, part, q, y, x); });
+  return largest_error(model, [&](const Part& part) { return estimated_of(model, part, q, y, x, d, times); });
+}
+
+std::vector<double> estimated_motion_errors(const Model& model, const Positions& q, const Positions& y,
+                                            const Positions& x, const Positions& d, double times) {
+  std::vector<double> errors;
+  for (const Part& part : model.parts) errors.push_back(estimated_of(model, part, q, y, x, d, times));
+  return errors;
 }
 
 }  // namespace supple

@@ -22,5 +22,8 @@ std::vector<double> motion_errors(const Model& model, const Positions& q, const 
 // from x, and the step's own motion to be that to x.
 double estimated_motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,
                               const Positions& d, double times);
+// Returns that of each of the model's parts.
+std::vector<double> estimated_motion_errors(const Model& model, const Positions& q, const Positions& y,
+                                            const Positions& x, const Positions& d, double times);
 
 }  // namespace supple

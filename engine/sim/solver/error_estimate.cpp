@@ -73,19 +73,38 @@ double error_at_end(const Model& model, const StepInputs& inputs, OpenWorkspace&
   return error_of(left, gained_in_all(model, inputs, w, gained));
 }
 
-// The direction's quadratic model foretells a gain of half the decrement. If the gain that is left is N times the
-// foretold one, the way that is left is sqrt(N) times the direction.
-double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
-  const StepReport& report = w.report;
-  if (report.failed || report.decrement <= 0) return 0;
+namespace {
+
+// Returns the last direction with what the second level adds to it (n_free x 3) [m].
+const Positions& way_ahead(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
   Positions& d = w.trial.gradient;
   d = w.direction;
   if (inputs.solver.levels < 2 && !w.second_level_serves && w.second_level.begin(model, w.current.x)) {
     w.scratch = -w.current.gradient;
     w.second_level.add_to(model, w.scratch, w.threads, d);
   }
-  const double more = std::sqrt(std::max(1.0, report.remaining_estimate / report.decrement));
-  return estimated_motion_error(model, q, w.y, w.current.x, d, more);
+  return d;
+}
+
+// The direction's quadratic model foretells a gain of half the decrement. If the gain that is left is N times the
+// foretold one, the way that is left is sqrt(N) times the direction.
+double times_ahead(const StepReport& report) {
+  return std::sqrt(std::max(1.0, report.remaining_estimate / report.decrement));
+}
+
+}  // namespace
+
+double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
+  if (w.report.failed || w.report.decrement <= 0) return 0;
+  return estimated_motion_error(model, q, w.y, w.current.x, way_ahead(model, inputs, w), times_ahead(w.report));
+}
+
+void report_motion_estimates(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
+  StepReport& report = w.report;
+  report.motion_estimate = motion_estimate(model, inputs, q, w);
+  report.motion_estimates.clear();
+  if (model.parts.size() < 2 || report.motion_estimate == 0) return;
+  report.motion_estimates = estimated_motion_errors(model, q, w.y, w.current.x, w.trial.gradient, times_ahead(report));
 }
 
 bool is_near_enough(const Model& model, const StepInputs& inputs, const Positions* q, double above_start,

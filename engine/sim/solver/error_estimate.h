@@ -52,6 +52,10 @@ double error_at_end(const Model& model, const StepInputs& inputs, OpenWorkspace&
 // iterate. Overwrites the trial iterate.
 double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& workspace);
 
+// Writes these estimates to the report, for all of a step and for each part of a model of several.
+void report_motion_estimates(const Model& model, const StepInputs& inputs, const Positions& q,
+                             OpenWorkspace& workspace);
+
 // Tells whether the estimates have reached the target error of the settings: of equation 12, and of motion where the
 // step's start q (n x 3) is given. above_start: g(y) - g of the first iterate, which equation 12 counts as gained [J].
 // Overwrites the trial iterate.

@@ -76,7 +76,7 @@ void report_times(OpenWorkspace& w) {
 void estimate_errors(const StepContext& c) {
   StepReport& report = c.w.report;
   report.error_estimate = error_at_end(c.model, c.inputs, c.w, report.decrease + c.above_start);
-  report.motion_estimate = motion_estimate(c.model, c.inputs, c.state.x, c.w);
+  report_motion_estimates(c.model, c.inputs, c.state.x, c.w);
 }
 
 // Makes the first search, from the first iterate, with its further rounds.
