@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "film/earlier_run.h"
 #include "film/pictures/picture_words.h"
+#include "film/plan/loaded_film.h"
 #include "film/plan/shipped_files.h"
 #include "film/plan/slow_work_line.h"
 #include "film/rough_pictures.h"
@@ -39,7 +40,8 @@ struct Checked {
 
 Checked read_all(const CheckCommand& command) {
   const SceneSource source = opened_scene(command.scene, command.json);
-  Checked checked{Script::load(source, assets_folder(), command.settings), {}, {}, {}};
+  std::vector<std::string> settings = command.settings;
+  Checked checked{load_script(source, settings), {}, {}, {}};
   const SceneDef& scene = checked.script.scene();
   check_earlier_run(scene);
   if (scene.sweep_points > 0 && !checked.script.is_replay()) {
@@ -55,7 +57,7 @@ Checked read_all(const CheckCommand& command) {
   FilmPlan plan;
   plan.scene = source.path.string();
   plan.scene_text = source.text;
-  plan.settings = command.settings;
+  plan.settings = std::move(settings);
   plan.cache = !command.no_cache;
   if (!scene.from) checked.missing = missing_in_rough_pictures(plan, all_solvers());
   return checked;

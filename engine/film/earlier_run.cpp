@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -153,6 +154,14 @@ std::vector<std::string> missing(const std::vector<std::string>& names, const st
   return result;
 }
 
+// Refuses a clock that is not that of the run. The program fills it in, but a scene may say anything.
+void check_clock(const EarlierFrame& from, double of_run, double of_film) {
+  constexpr double round_off = 1e-6;  // [s]
+  if (std::abs(of_run - of_film) < round_off) return;
+  throw InputError({{from.place, fmt::format("clock: frame {} of {} ended at {:.9g} s, and not at {:.9g} s", from.frame,
+                                             from.run.string(), of_run, of_film)}});
+}
+
 // Hands the states over. Returns notes about bodies that only one of the two has.
 std::vector<std::string> take_over(const World& earlier, const EarlierFrame& from, World& world) {
   const std::vector<std::string> there = names_of(earlier.bodies()), here = names_of(world.bodies());
@@ -206,6 +215,7 @@ std::vector<std::string> go_on_from_run(const FilmPlan& plan, const Solvers& sol
   if (const auto state = checkpoint_of(run, film, frames)) earlier.restore(*state);
   const int first = earlier.frames();
   play_until(earlier, frames, cuts_of(run, earlier, frames));
+  check_clock(*from, earlier.scene().time_after(from->frame), world.scene().time_at_start());
   std::vector<std::string> notes = take_over(earlier, *from, world);
   const std::string again = first == frames ? "its checkpoint is used"
                                             : fmt::format("frames {} to {} were made again, in {:.1f} s", first,

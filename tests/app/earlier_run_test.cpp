@@ -120,6 +120,34 @@ TEST_F(EarlierRun, GoesOnFromARunThatWentOnItself) {
   const Result third = run(folder(), {"replay", "replay.toml", "--out", "third", "--no-images", "--from", "second",
                                       "--frame", "3", "--frames", "2"});
   ASSERT_EQ(third.status, 0) << third.err;
+  const nlohmann::json then = profile_of(path("whole"))["frames"], now = profile_of(path("third"))["frames"];
+  for (std::size_t f = 0; f < 2; ++f) {  // frame 3 of the second is frame 13 of the first
+    EXPECT_EQ(now[f]["time_s"], then[14 + f]["time_s"]) << f;
+    EXPECT_EQ(now[f]["state_hash"], then[14 + f]["state_hash"]) << f;
+  }
+  const Result clock = run(folder(), {"check", "replay.toml", "--set", "from={run=\"second\",frame=3,clock=0.2}"});
+  EXPECT_EQ(clock.status, 0) << clock.err;
+  const Result wrong = run(folder(), {"replay", "replay.toml", "--no-images", "--out", "wrong", "--set",
+                                      "from={run=\"second\",frame=3,clock=0.2}"});
+  EXPECT_NE(wrong.err.find("frame 3 of second ended at 0.466666667 s, and not at 0.2 s"), std::string::npos)
+      << wrong.err;
+}
+
+TEST_F(EarlierRun, KeepsTheClockWhereItHasAnotherRate) {
+  const Result finer = go_on("finer", {"--frame", "9", "--frames", "4", "--no-images", "--set", "fps=60"});
+  ASSERT_EQ(finer.status, 0) << finer.err;
+  const nlohmann::json frames = profile_of(path("finer"))["frames"];
+  EXPECT_NEAR(frames[0]["time_s"].get<double>(), 10.0 / 30 + 1.0 / 60, 1e-12);
+  EXPECT_NEAR(frames[3]["time_s"].get<double>(), 12.0 / 30, 1e-12);
+  const Result later = run(folder(), {"render", "bar.toml", "--out", "coarse", "--no-images", "--frames", "2", "--from",
+                                      "finer", "--frame", "3", "--set", "fps=30"});
+  ASSERT_EQ(later.status, 0) << later.err;
+  EXPECT_NEAR(profile_of(path("coarse"))["frames"][0]["time_s"].get<double>(), 13.0 / 30, 1e-12);
+  const Result between = go_on("refused", {"--frame", "9", "--no-images", "--set", "fps=25"});
+  EXPECT_EQ(between.status, 2);
+  EXPECT_NE(between.err.find("ends at 0.333333 s, which is between two frames of this film, at 25 a second"),
+            std::string::npos)
+      << between.err;
 }
 
 TEST_F(EarlierRun, IsResumedWithTheSameBits) {

@@ -80,6 +80,23 @@ FilmPlan plan_of_run(const RunRecord& run, const std::filesystem::path& scene,
   return film;
 }
 
+double time_in_run(const RunRecord& run, int frame) {
+  try {
+    const Json scene = parsed_json<Json>(run.info_json).at("scene");
+    SceneDef clock;
+    if (const auto rate = scene.find("fps"); rate != scene.end())
+      clock.fps = rate->is_string() ? FrameRate::parse(rate->get<std::string>()).value_or(clock.fps)
+                                    : FrameRate(rate->get<double>());
+    if (const auto from = scene.find("from"); from != scene.end()) {
+      clock.from.emplace().frame = from->at("frame").get<int>();
+      if (from->contains("clock")) clock.from->clock = from->at("clock").get<double>();
+    }
+    return clock.time_after(frame);
+  } catch (const Json::exception&) {
+    throw InputError((run.folder / "run.json").string(), "is damaged: it does not tell the rate of the run's frames");
+  }
+}
+
 namespace {
 
 // Keeps only those changes of a replay that change what is simulated.
