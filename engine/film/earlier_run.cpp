@@ -78,17 +78,20 @@ void play_until(World& world, int frames, const std::vector<CutsByFrame>& cuts) 
   }
 }
 
-// Returns what a world's scene says of a body, now; null where a table makes several bodies.
+// Returns what a world's scene says of a body, now: its table, or all that may bear on it where a table makes several
+// bodies.
 Json table_of_body(const World& world, std::size_t body) {
   const auto scene = parsed_json<Json>(world.script().scene_json_at(world.frames() - 1));
   const Json& tables = scene.at("body");
-  return tables.size() == world.size() ? tables.at(body) : Json();
+  if (tables.size() == world.size()) return tables.at(body);
+  return Json::array(
+      {world.bodies()[body].def.name, tables, scene.value("scatter", Json()), scene.value("seed", Json())});
 }
 
 // Tells whether what a body's solver remembers holds for the body of the film too.
 bool is_same_model(const World& earlier, std::size_t there, const World& world, std::size_t here) {
   const Json a = table_of_body(earlier, there), b = table_of_body(world, here);
-  return !a.is_null() && a == b && earlier.scene().time_step() == world.scene().time_step();
+  return a == b && earlier.scene().time_step() == world.scene().time_step();
 }
 
 EarlierState state_of(const MovingBody& body) {

@@ -150,6 +150,28 @@ TEST_F(EarlierRun, KeepsTheClockWhereItHasAnotherRate) {
       << between.err;
 }
 
+// Bodies of one table, and bodies that touch.
+TEST_F(EarlierRun, GoesOnWithManyBodiesOfAFew) {
+  std::ofstream(path("pile.toml")) << R"(frames = 20
+[[body]]
+name = "lump"
+box = { extent = [0.1, 0.1, 0.1], cells = [2, 2, 2] }
+material = "jelly"
+start_inside = "move"
+[[scatter]]
+bodies = ["lump"]
+count = 6
+box = [[0, 0, 0], [0.15, 0.3, 0.15]]
+[[collider]]
+shape = { half_space = { normal = [0, 1, 0], offset = 0.01 } }
+)";
+  ASSERT_EQ(run(folder(), {"render", "pile.toml", "--out", "pile", "--no-images"}).status, 0);
+  const Result later = run(folder(), {"render", "pile.toml", "--out", "rest", "--no-images", "--frames", "4", "--from",
+                                      "pile", "--frame", "15"});
+  ASSERT_EQ(later.status, 0) << later.err;
+  EXPECT_EQ(profile_of(path("rest"))["frames"][3]["state_hash"], profile_of(path("pile"))["frames"][19]["state_hash"]);
+}
+
 TEST_F(EarlierRun, IsResumedWithTheSameBits) {
   const std::vector<std::string> words = {"--frame", "9", "--frames", "12", "--no-images", "--checkpoint-every", "4"};
   ASSERT_EQ(go_on("straight", words).status, 0);
