@@ -170,6 +170,8 @@ shape = { half_space = { normal = [0, 1, 0], offset = 0.01 } }
                                       "pile", "--frame", "15"});
   ASSERT_EQ(later.status, 0) << later.err;
   EXPECT_EQ(profile_of(path("rest"))["frames"][3]["state_hash"], profile_of(path("pile"))["frames"][19]["state_hash"]);
+  EXPECT_EQ(later.err.find("before the first frame"), std::string::npos) << later.err;
+  EXPECT_EQ(later.err.find("overlap at the start"), std::string::npos) << later.err;
 }
 
 TEST_F(EarlierRun, IsResumedWithTheSameBits) {

@@ -133,14 +133,14 @@ bool may_stop_a_fall(const SceneCollider& collider, const Bounds& shaft) {
 void warn_of_fall(const SceneDef& scene, const Body& body, std::vector<Warning>& list) {
   const double size = bounds_of(body.description.mesh.rest).diagonal(), duration = scene.fps.time_of(scene.frames);
   for (std::size_t h = 0; h < body.description.handles.size(); ++h) {
-    if (body.def.handles[h].from < duration) return;
+    if (body.def.handles[h].from < scene.time_at_start() + duration) return;
   }
-  Bounds shaft =
-      bounds_of(start_positions(body.def.start, body.description.mesh.rest, body.seed, body.description.name));
+  Bounds shaft = bounds_of(first_positions(body));
+  const Vec3 velocity = body.from ? Vec3(body.from->v.colwise().mean().transpose()) : body.def.velocity;
   const double bottom = shaft.lower.y(), g = -scene.gravity.y();
-  const double lowest = bottom + body.def.velocity.y() * duration - 0.5 * g * duration * duration;
+  const double lowest = bottom + velocity.y() * duration - 0.5 * g * duration * duration;
   if (g <= 0 || bottom < -0.01 * size || lowest > -0.5 * size) return;
-  const Vec3 drift = body.def.velocity * duration + 0.5 * duration * duration * scene.gravity;
+  const Vec3 drift = velocity * duration + 0.5 * duration * duration * scene.gravity;
   shaft.include(shaft.lower + drift);
   shaft.include(shaft.upper + drift);
   for (const SceneCollider& collider : collision_set(scene).scene_colliders) {
@@ -152,8 +152,6 @@ void warn_of_fall(const SceneDef& scene, const Body& body, std::vector<Warning>&
                                 body.def.name)));
 }
 
-// Warns of bodies that start in the same place, whether they meet or pass through each other, or in themselves. Either
-// of them may say that it is meant.
 // Warns of colliders that deform so fast that a body may be hit before its elements can give way: where a part of the
 // surface goes further in a step than a tenth of the smallest body.
 void warn_of_fast_surfaces(const SceneDef& scene, const std::vector<Body>& bodies, std::vector<Warning>& list) {
@@ -175,6 +173,13 @@ void warn_of_fast_surfaces(const SceneDef& scene, const std::vector<Body>& bodie
   }
 }
 
+// Tells whether an overlap is only that of bodies that touch, in a film that goes on from another one.
+bool is_contact_of_earlier_run(const std::vector<Body>& bodies, const BodyDepth& overlap) {
+  return bodies[overlap.a].from && bodies[overlap.b].from && overlap.share <= DeepBodies::deep;
+}
+
+// Warns of bodies that start in the same place, whether they meet or pass through each other, or in themselves. Either
+// of them may say that it is meant.
 void warn_of_shared_space(const std::vector<Body>& bodies, std::vector<Warning>& list) {
   std::vector<Positions> points;
   for (const Body& body : bodies) points.push_back(first_positions(body));
@@ -199,10 +204,9 @@ void warn_of_shared_space(const std::vector<Body>& bodies, std::vector<Warning>&
                            bodies[a].def.name, bodies[b].def.name)
              : fmt::format("bodies '{}' and '{}' pass through each other from the start on: these two do not meet",
                            bodies[a].def.name, bodies[b].def.name));
-  for (const BodyDepth& overlap : overlaps_of_bodies(bodies, points))
-    warn(overlap.a, overlap.b, start_overlap_text(bodies, overlap));
-  for (const BodyDepth& overlap : bodies_in_themselves(bodies, points))
-    warn(overlap.a, overlap.b, start_overlap_text(bodies, overlap));
+  for (const auto& overlaps : {overlaps_of_bodies(bodies, points), bodies_in_themselves(bodies, points)})
+    for (const BodyDepth& overlap : overlaps)
+      if (!is_contact_of_earlier_run(bodies, overlap)) warn(overlap.a, overlap.b, start_overlap_text(bodies, overlap));
 }
 
 }  // namespace
@@ -303,7 +307,7 @@ std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bo
                                     "substeps make its motion sharper",
                                     body.def.name, body.def.solver.settings.iterations)));
     }
-    if (!body.overlaps.empty() && body.def.start_inside != StartInside::push)
+    if (!body.overlaps.empty() && !body.from && body.def.start_inside != StartInside::push)
       list.push_back(at(WarningKind::inside, body.def.place, overlap_text(body)));
     warn_of_fall(scene, body, list);
     warn_of_substance(body, list);
