@@ -39,14 +39,23 @@ RunRecord run_with_frame(const EarlierFrame& from) {
 }
 
 // Reads the run's scene again, whose steps can then be made. plan: of the film that goes on from the run.
-LoadedFilm film_of_run(const RunRecord& run, const FilmPlan& plan, const Solvers& solvers) {
+LoadedFilm film_of_run(const RunRecord& run, const EarlierFrame& from, const FilmPlan& plan, const Solvers& solvers) {
   FilmPlan earlier = plan_of_run(run, {}, {});
   earlier.pictures = FilmPictures::none;
   earlier.threads = plan.threads;
   earlier.cache = plan.cache;
   earlier.quiet = plan.quiet;
   LoadedFilm film = load_film(earlier, {});
-  check_same_motion(run, film);
+  try {
+    check_same_motion(run, film);
+  } catch (const InputError& changed) {
+    std::vector<Problem> problems = changed.problems();
+    problems.push_back(
+        {from.place, fmt::format("the steps of {} are made again, for which its scene has to be as it was: "
+                                 "what is new stands in another file, or in --set",
+                                 from.run.string())});
+    throw InputError(std::move(problems));
+  }
   go_on_from_run(earlier, solvers, film.world);
   return film;
 }
@@ -210,7 +219,7 @@ std::vector<std::string> go_on_from_run(const FilmPlan& plan, const Solvers& sol
   if (plan.preview || plan.rough)
     throw InputError({{from->place, "a preview has other meshes than the run, and cannot go on from it"}});
   const RunRecord run = run_with_frame(*from);
-  LoadedFilm film = film_of_run(run, plan, solvers);
+  LoadedFilm film = film_of_run(run, *from, plan, solvers);
   World& earlier = film.world;
   Threads threads(film.info.threads);
   earlier.start(solvers, &threads);

@@ -243,6 +243,8 @@ material = { model = "neo-hookean", mu = 2e4, lambda = 4e4 }
   std::ofstream(path("free.toml"), std::ios::app) << "density = 300\n";
   const Result changed = render("free.toml");
   EXPECT_NE(changed.err.find("density is 300 here and was"), std::string::npos) << changed.err;
+  EXPECT_NE(changed.err.find("are made again, for which its scene has to be as it was"), std::string::npos)
+      << changed.err;
   // The second cloth has as many vertices as the first, and other triangles.
   const std::string cloth = "[[body]]\nname = \"sheet\"\ncloth = { extent = [1, 1], stretch = 100, cells = ";
   std::ofstream(path("square.toml")) << "frames = 2\n" << cloth << "[8, 8] }\n";

@@ -127,9 +127,9 @@ void check_same_motion(const RunRecord& run, const LoadedFilm& film) {
         difference.path == "output" && (difference.a + difference.b).find("energy") == std::string::npos;
     if (seen_output) continue;
     problems.push_back({film.info.scene_file, 0, 0,
-                        fmt::format("{} is {} here and was {} in the run: only what is seen may differ (camera, look, "
-                                    "output's width, height, samples, blur_samples and passes, colours, labels, "
-                                    "patterns, colliders being visible)",
+                        fmt::format("{} is {} here and was {} in the run: only what is seen may differ (title, "
+                                    "camera, look, field, text, output's size, width, height, samples, blur_samples "
+                                    "and passes, colours, labels, patterns, colliders being visible)",
                                     difference.path, difference.b, difference.a)});
   }
   if (simulated_part(member_text(info, "replay")) != simulated_part(film.info.replay_json))
