@@ -103,6 +103,18 @@ TEST_F(EarlierRun, GoesOnWithTheSameBitsTimesAndPictures) {
   const Result drawn = run(folder(), {"draw", "later", "--out", "drawn"});
   ASSERT_EQ(drawn.status, 0) << drawn.err;
   EXPECT_EQ(read_file(path("drawn/frames/000000.png")), read_file(path("later/frames/000000.png")));
+  EXPECT_NE(run(folder(), {"compare", "whole", "later"}).out.find("frame 0 is at 0.03333 s in A and at 0.3667 s in B"),
+            std::string::npos);
+  EXPECT_EQ(run(folder(), {"compare", "later", "later"}).out.find("clock"), std::string::npos);
+  const auto distance = [&](const std::string& of, const std::string& to, const std::string& still) {
+    return run(folder(), {"draw", of, "--frame", "3", "--still", still, "--field", "distance", "--range", "0,0.1",
+                          "--reference", to});
+  };
+  ASSERT_EQ(distance("later", "later", "own.png").status, 0);
+  ASSERT_EQ(distance("later", "whole", "other.png").status, 0);
+  EXPECT_EQ(read_file(path("own.png")), read_file(path("other.png"))) << "both are compared at the same time";
+  const Result early = distance("whole", "later", "early.png");
+  EXPECT_NE(early.err.find("starts 10 frames after the frame 0"), std::string::npos) << early.err;
 }
 
 TEST_F(EarlierRun, StartsFromTheCheckpointOfTheRunWhereThatIsEarlyEnough) {
