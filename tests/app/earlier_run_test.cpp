@@ -232,6 +232,8 @@ TEST_F(EarlierRun, RefusesByNameWhatCannotGoOn) {
   told({"--frame", "9", "--preview"}, "a preview has other meshes");
   const Result nowhere = run(folder(), {"render", "bar.toml", "--from", "nowhere", "--out", "refused"});
   EXPECT_NE(nowhere.err.find("nowhere: no such folder"), std::string::npos) << nowhere.err;
+  const Result empty = run(folder(), {"render", "bar.toml", "--from", "", "--out", "refused"});
+  EXPECT_NE(empty.err.find("--from: names no folder"), std::string::npos) << empty.err;
   const Result alone = run(folder(), {"render", "bar.toml", "--frame", "3", "--out", "refused"});
   EXPECT_NE(alone.err.find("--frame requires --from"), std::string::npos) << alone.err;
   const std::string free = R"(frames = 3
