@@ -10,6 +10,7 @@
 #include "scene/building/body_passings.h"
 #include "scene/building/collision_set.h"
 #include "scene/building/overlaps.h"
+#include "scene/building/solver_warnings.h"
 #include "scene/building/thin_bodies.h"
 #include "scene/definition/meeting.h"
 #include "sim/measures/measures.h"
@@ -301,6 +302,8 @@ std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bo
                                     "solver has one level; solver.levels = 2 mends it",
                                     body.def.name)));
     }
+    if (std::string slow = damping_text(scene, body); !slow.empty())
+      list.push_back(at(WarningKind::turning, body.def.place, std::move(slow)));
     if ((crossing > stiff_crossing || is_stiff_cloth(body)) && body.def.solver.settings.iterations <= 10) {
       list.push_back(at(WarningKind::stiffness, body.def.place,
                         fmt::format("body '{}' is stiff for {} iterations a step; more solver.iterations or "
@@ -321,6 +324,8 @@ std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bo
   }
   warn_of_shared_space(bodies, list);
   warn_of_fast_surfaces(scene, bodies, list);
+  if (std::string idle = idle_matrix_text(bodies); !idle.empty())
+    list.push_back({std::nullopt, {bodies.front().def.place, std::move(idle)}});
   return list;
 }
 
