@@ -114,6 +114,18 @@ TEST_F(SurfaceScene, PiecesThatTouchBecomeOneBodyByWhatLiesBetween) {
   EXPECT_EQ(scene_of("surface = \"near.obj\"\npieces = \"bodies\"\n").bodies.size(), 2u);
 }
 
+TEST_F(SurfaceScene, WhatIsTooLargeIsRefusedWithAWayOut) {
+  write("huge.obj", obj_text(test::box_surface(Vec3(1e8, 1e8, 1e8))));
+  const SceneDef scene = scene_of("surface = \"huge.obj\"\n");
+  try {
+    (void)UnplacedBodies().get(scene, scene.bodies.at(0));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("is larger than 1e6 m"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("`size` or `units`"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(SurfaceScene, WhatIsThinnerThanAnElementIsHeldByElementsAroundIt) {
   write("plate.obj", obj_text(test::box_surface(Vec3(1, 1e-3, 0.5))));
   const SceneDef scene = scene_of("surface = \"plate.obj\"\n");
