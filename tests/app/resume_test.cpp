@@ -10,6 +10,7 @@
 #include "support/bodies.h"
 #include "support/program.h"
 #include "support/replayed_film.h"
+#include "support/surfaces.h"
 
 namespace supple {
 namespace resume_test {
@@ -141,6 +142,18 @@ shape = "ball.toml"
   expect_refused("two.mesh", two_regions(2, 1));
   expect_refused("last.toml", "[[part]]\nsphere = { radius = 0.11 }\n");
   EXPECT_EQ(run(folder_.path, film({"--no-images", "--out", "a", "--resume", "--frames", "12"})).status, 0);
+}
+
+TEST_F(ResumedFilm, NamesTheColoursOfAModelThatHaveChanged) {
+  const auto write = [&](const char* name, const std::string& text) { std::ofstream(folder_.path / name) << text; };
+  write("red.obj", "mtllib red.mtl\nusemtl red\n" + test::obj_text(test::box_surface(Vec3(0.2, 0.2, 0.2))));
+  write("red.mtl", "newmtl red\nKd 1 0 0\n");
+  write("red.toml", "frames = 2\n[[body]]\nsurface = \"red.obj\"\nvertices = 60\nmaterial = \"jelly\"\n");
+  ASSERT_EQ(run(folder_.path, {"render", "red.toml", "--no-images", "--out", "red"}).status, 0);
+  write("red.mtl", "newmtl red\nKd 0 1 0\n");
+  const Result result = run(folder_.path, {"render", "red.toml", "--no-images", "--out", "red", "--resume"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("files.colours of red.obj.xxh64: "), std::string::npos) << result.err;
 }
 
 TEST_F(ResumedFilm, StartsAnewWhereThereIsNoCheckpointYet) {
