@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "film/earlier_run.h"
 #include "film/pictures/picture_words.h"
+#include "film/plan/film_coding.h"
 #include "film/plan/loaded_film.h"
 #include "film/plan/shipped_files.h"
 #include "film/plan/slow_work_line.h"
@@ -77,9 +78,20 @@ std::vector<std::string> notes_of(const Checked& checked) {
   return notes;
 }
 
+// Lists what a scene asks its pictures to have, and a run of this program refuses to draw.
+std::vector<Problem> undrawn(const SceneDef& scene) {
+  std::vector<Problem> list = known_after_film(scene);
+  try {
+    check_passes(scene);
+  } catch (const InputError& error) {
+    list.insert(list.end(), error.problems().begin(), error.problems().end());
+  }
+  return list;
+}
+
 std::vector<Warning> warnings_of(const Checked& checked) {
   std::vector<Warning> list = all_warnings(checked.script, checked.bodies);
-  for (Problem& later : known_after_film(checked.script.scene())) {
+  for (Problem& later : undrawn(checked.script.scene())) {
     later.message = "supple render refuses this: " + later.message;
     list.push_back({std::nullopt, std::move(later)});
   }
