@@ -10,6 +10,8 @@
 #include "base/text.h"
 #include "film/earlier_run.h"
 #include "film/pictures/picture_words.h"
+#include "film/plan/film_coding.h"
+#include "film/plan/loaded_film.h"
 #include "film/plan/shipped_files.h"
 #include "film/plan/slow_work_line.h"
 #include "film/rough_pictures.h"
@@ -39,7 +41,8 @@ struct Checked {
 
 Checked read_all(const CheckCommand& command) {
   const SceneSource source = opened_scene(command.scene, command.json);
-  Checked checked{Script::load(source, assets_folder(), command.settings), {}, {}, {}};
+  std::vector<std::string> settings = command.settings;
+  Checked checked{load_script(source, settings), {}, {}, {}};
   const SceneDef& scene = checked.script.scene();
   check_earlier_run(scene);
   if (scene.sweep_points > 0 && !checked.script.is_replay()) {
@@ -55,7 +58,7 @@ Checked read_all(const CheckCommand& command) {
   FilmPlan plan;
   plan.scene = source.path.string();
   plan.scene_text = source.text;
-  plan.settings = command.settings;
+  plan.settings = std::move(settings);
   plan.cache = !command.no_cache;
   if (!scene.from) checked.missing = missing_in_rough_pictures(plan, all_solvers());
   return checked;
@@ -75,9 +78,20 @@ std::vector<std::string> notes_of(const Checked& checked) {
   return notes;
 }
 
+// Lists what a scene asks its pictures to have, and a run of this program refuses to draw.
+std::vector<Problem> undrawn(const SceneDef& scene) {
+  std::vector<Problem> list = known_after_film(scene);
+  try {
+    check_passes(scene);
+  } catch (const InputError& error) {
+    list.insert(list.end(), error.problems().begin(), error.problems().end());
+  }
+  return list;
+}
+
 std::vector<Warning> warnings_of(const Checked& checked) {
   std::vector<Warning> list = all_warnings(checked.script, checked.bodies);
-  for (Problem& later : known_after_film(checked.script.scene())) {
+  for (Problem& later : undrawn(checked.script.scene())) {
     later.message = "supple render refuses this: " + later.message;
     list.push_back({std::nullopt, std::move(later)});
   }

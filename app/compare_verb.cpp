@@ -89,9 +89,18 @@ std::string times_text(const RunComparison& c) {
   return text;
 }
 
+// Tells of clocks that do not agree, as those of a run and of one that goes on from its middle; empty where they do.
+std::string clock_text(const RunRecord& a, const RunRecord& b) {
+  if (a.rows.empty() || b.rows.empty() || a.rows.front().time_s == b.rows.front().time_s) return "";
+  return fmt::format(
+      "  clock           frame 0 is at {:.4g} s in A and at {:.4g} s in B: frames are compared by their numbers\n",
+      a.rows.front().time_s, b.rows.front().time_s);
+}
+
 std::string text_of(const RunRecord& a, const RunRecord& b, const RunComparison& c) {
   std::string text = fmt::format("  A               {} ({} frames, {})\n", a.folder.string(), c.frames_a, a.ended());
   text += fmt::format("  B               {} ({} frames, {})\n", b.folder.string(), c.frames_b, b.ended());
+  text += clock_text(a, b);
   text += fmt::format("  states          {}\n{}\n{}\n", states_text(c), motion_text(c), distance_table(c));
   text += times_text(c) + "\n";
   return text + differences_text(c);

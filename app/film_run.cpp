@@ -9,6 +9,7 @@
 
 #include "app/solvers.h"
 #include "base/console.h"
+#include "base/error.h"
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "base/timing.h"
@@ -200,7 +201,11 @@ void add_film_options(Verb& verb, FilmCommand& command) {
   verb.option("--out", plan.out, "folder for the results [out/NAME]");
   add_size_option(verb, plan.size, "the scene's");
   verb.option("--frames", plan.frames, "length of the film, over the scene's").between(1, 1000000);
-  const Option from = verb.option("--from", plan.from,
+  const auto take_from = [&plan](const std::string& folder) {
+    if (folder.empty()) throw InputError("--from", "names no folder");  // as of a shell's variable that is not set
+    plan.from = folder;
+  };
+  const Option from = verb.option("--from", take_from,
                                   "folder of an earlier run: bodies of the same name go on from where they were there");
   verb.option("--frame", plan.from_frame, "of that run, counted from 0 [its last]").needs(from).between(0, 1000000);
   verb.option("--threads", plan.threads, "threads of the solver [all cores]; results do not depend on it")

@@ -43,6 +43,12 @@ std::string surface_summary(const std::filesystem::path& file) {
   text += fmt::format("surface         {}\nextent          {:.4g} x {:.4g} x {:.4g} in the file's units\n",
                       file.string(), extent.x(), extent.y(), extent.z());
   text += fmt::format("colours         {}\n", read.found.empty() ? "none" : read.found);
+  const auto is_open = [](const std::string& note) {
+    return note.find("the surface is open") != note.npos || note.find("closed with caps") != note.npos;
+  };
+  if (std::ranges::any_of(read.notes, is_open))
+    text += fmt::format("cloth           a body can have its triangles as they are: cloth = {{ surface = \"{}\" }}\n",
+                        file.filename().string());
   constexpr std::size_t most = 12;
   for (std::size_t p = 0; p < std::min(most, read.pieces.size()); ++p)
     text += piece_text(read.pieces[p], read.volumes[p], p + 1);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -38,14 +39,23 @@ RunRecord run_with_frame(const EarlierFrame& from) {
 }
 
 // Reads the run's scene again, whose steps can then be made. plan: of the film that goes on from the run.
-LoadedFilm film_of_run(const RunRecord& run, const FilmPlan& plan, const Solvers& solvers) {
+LoadedFilm film_of_run(const RunRecord& run, const EarlierFrame& from, const FilmPlan& plan, const Solvers& solvers) {
   FilmPlan earlier = plan_of_run(run, {}, {});
   earlier.pictures = FilmPictures::none;
   earlier.threads = plan.threads;
   earlier.cache = plan.cache;
   earlier.quiet = plan.quiet;
   LoadedFilm film = load_film(earlier, {});
-  check_same_motion(run, film);
+  try {
+    check_same_motion(run, film);
+  } catch (const InputError& changed) {
+    std::vector<Problem> problems = changed.problems();
+    problems.push_back(
+        {from.place, fmt::format("the steps of {} are made again, for which its scene has to be as it was: "
+                                 "what is new stands in another file, or in --set",
+                                 from.run.string())});
+    throw InputError(std::move(problems));
+  }
   go_on_from_run(earlier, solvers, film.world);
   return film;
 }
@@ -77,17 +87,20 @@ void play_until(World& world, int frames, const std::vector<CutsByFrame>& cuts) 
   }
 }
 
-// Returns what a world's scene says of a body, now; null where a table makes several bodies.
+// Returns what a world's scene says of a body, now: its table, or all that may bear on it where a table makes several
+// bodies.
 Json table_of_body(const World& world, std::size_t body) {
   const auto scene = parsed_json<Json>(world.script().scene_json_at(world.frames() - 1));
   const Json& tables = scene.at("body");
-  return tables.size() == world.size() ? tables.at(body) : Json();
+  if (tables.size() == world.size()) return tables.at(body);
+  return Json::array(
+      {world.bodies()[body].def.name, tables, scene.value("scatter", Json()), scene.value("seed", Json())});
 }
 
 // Tells whether what a body's solver remembers holds for the body of the film too.
 bool is_same_model(const World& earlier, std::size_t there, const World& world, std::size_t here) {
   const Json a = table_of_body(earlier, there), b = table_of_body(world, here);
-  return !a.is_null() && a == b && earlier.scene().time_step() == world.scene().time_step();
+  return a == b && earlier.scene().time_step() == world.scene().time_step();
 }
 
 EarlierState state_of(const MovingBody& body) {
@@ -153,6 +166,14 @@ std::vector<std::string> missing(const std::vector<std::string>& names, const st
   return result;
 }
 
+// Refuses a clock that is not that of the run. The program fills it in, but a scene may say anything.
+void check_clock(const EarlierFrame& from, double of_run, double of_film) {
+  constexpr double round_off = 1e-6;  // [s]
+  if (std::abs(of_run - of_film) < round_off) return;
+  throw InputError({{from.place, fmt::format("clock: frame {} of {} ended at {:.9g} s, and not at {:.9g} s", from.frame,
+                                             from.run.string(), of_run, of_film)}});
+}
+
 // Hands the states over. Returns notes about bodies that only one of the two has.
 std::vector<std::string> take_over(const World& earlier, const EarlierFrame& from, World& world) {
   const std::vector<std::string> there = names_of(earlier.bodies()), here = names_of(world.bodies());
@@ -198,7 +219,7 @@ std::vector<std::string> go_on_from_run(const FilmPlan& plan, const Solvers& sol
   if (plan.preview || plan.rough > 0)
     throw InputError({{from->place, "a preview has other meshes than the run, and cannot go on from it"}});
   const RunRecord run = run_with_frame(*from);
-  LoadedFilm film = film_of_run(run, plan, solvers);
+  LoadedFilm film = film_of_run(run, *from, plan, solvers);
   World& earlier = film.world;
   Threads threads(film.info.threads);
   earlier.start(solvers, &threads);
@@ -206,6 +227,7 @@ std::vector<std::string> go_on_from_run(const FilmPlan& plan, const Solvers& sol
   if (const auto state = checkpoint_of(run, film, frames)) earlier.restore(*state);
   const int first = earlier.frames();
   play_until(earlier, frames, cuts_of(run, earlier, frames));
+  check_clock(*from, earlier.scene().time_after(from->frame), world.scene().time_at_start());
   std::vector<std::string> notes = take_over(earlier, *from, world);
   const std::string again = first == frames ? "its checkpoint is used"
                                             : fmt::format("frames {} to {} were made again, in {:.1f} s", first,

@@ -59,7 +59,7 @@ std::filesystem::path asked_folder(const FilmPlan& plan, const SceneDef& scene) 
 // other.
 void check_pictures_asked(const FilmPlan& plan, const LoadedFilm& film) {
   const SceneDef& scene = film.world.script().scene();
-  if (plan.pictures != FilmPictures::none) check_references(scene, film.world.bodies(), scene.frames - 1);
+  if (plan.pictures != FilmPictures::none) check_references(scene, film.world.bodies(), 0, scene.frames - 1);
   std::vector<Problem> later = known_after_film(scene);
   if (!later.empty() && plan.pictures != FilmPictures::none) throw InputError(std::move(later));
   if (plan.wants_video()) coding_for(plan.coding, scene);

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/signals.h"
 #include "base/trace.h"
-#include "film/plan/shipped_files.h"
+#include "film/plan/loaded_film.h"
 #include "output/files/whole_file.h"
 
 namespace supple {
@@ -33,7 +33,7 @@ void refuse_existing(const std::filesystem::path& file) {
 }  // namespace
 
 ReplayKeeper::ReplayKeeper(SceneSource source, std::vector<std::string> settings, std::filesystem::path file)
-    : file_(std::move(file)), script_(Script::load(source, assets_folder(), settings)) {
+    : file_(std::move(file)), script_(load_script(source, settings)) {
   std::error_code error;
   if (!file_.empty()) {
     refuse_existing(file_);

@@ -10,6 +10,7 @@
 #include "base/read_file.h"
 #include "base/text.h"
 #include "film/earlier_run.h"
+#include "film/plan/loaded_film.h"
 #include "film/plan/shipped_files.h"
 #include "film/record/body_recorder.h"
 #include "output/files/whole_file.h"
@@ -44,10 +45,10 @@ void warn(const std::string& text) {
 WorldFace::WorldFace(const py::object& source, const py::dict& set, int threads) {
   if (threads < 0 || threads > 256) throw InputError("threads", "must be 1 to 256, or 0 for all cores");
   const SceneSource from = source_of(source);
-  const std::vector<std::string> settings = settings_of(set);
+  std::vector<std::string> settings = settings_of(set);
   {
     const py::gil_scoped_release others_run;
-    Script script = Script::load(from, assets_folder(), settings);
+    Script script = load_script(from, settings);
     std::vector<Body> bodies = assemble(script.scene(), {UserCache::of_user(), {}});
     try_changes(script, bodies);
     for (const Problem& problem : said(all_warnings(script, bodies))) warnings_.push_back(problem.text());

@@ -428,6 +428,7 @@ TEST_F(DrawnRun, RefusesWhatWouldHaveMovedOtherwise) {
   EXPECT_EQ(material.status, 2);
   EXPECT_NE(material.err.find("body.bar.material.mu is 10000.0 here and was 20000.0 in the run"), std::string::npos)
       << material.err;
+  EXPECT_NE(material.err.find("(title, camera, look, field, text, output's size,"), std::string::npos) << material.err;
   const Result mesh = draw("none", {"--set", "body.bar.box.cells=[9, 2, 2]"});
   EXPECT_EQ(mesh.status, 2);
   EXPECT_FALSE(std::filesystem::exists(path("none")));

@@ -103,6 +103,18 @@ TEST_F(EarlierRun, GoesOnWithTheSameBitsTimesAndPictures) {
   const Result drawn = run(folder(), {"draw", "later", "--out", "drawn"});
   ASSERT_EQ(drawn.status, 0) << drawn.err;
   EXPECT_EQ(read_file(path("drawn/frames/000000.png")), read_file(path("later/frames/000000.png")));
+  EXPECT_NE(run(folder(), {"compare", "whole", "later"}).out.find("frame 0 is at 0.03333 s in A and at 0.3667 s in B"),
+            std::string::npos);
+  EXPECT_EQ(run(folder(), {"compare", "later", "later"}).out.find("clock"), std::string::npos);
+  const auto distance = [&](const std::string& of, const std::string& to, const std::string& still) {
+    return run(folder(), {"draw", of, "--frame", "3", "--still", still, "--field", "distance", "--range", "0,0.1",
+                          "--reference", to});
+  };
+  ASSERT_EQ(distance("later", "later", "own.png").status, 0);
+  ASSERT_EQ(distance("later", "whole", "other.png").status, 0);
+  EXPECT_EQ(read_file(path("own.png")), read_file(path("other.png"))) << "both are compared at the same time";
+  const Result early = distance("whole", "later", "early.png");
+  EXPECT_NE(early.err.find("starts 10 frames after the frame 0"), std::string::npos) << early.err;
 }
 
 TEST_F(EarlierRun, StartsFromTheCheckpointOfTheRunWhereThatIsEarlyEnough) {
@@ -120,6 +132,58 @@ TEST_F(EarlierRun, GoesOnFromARunThatWentOnItself) {
   const Result third = run(folder(), {"replay", "replay.toml", "--out", "third", "--no-images", "--from", "second",
                                       "--frame", "3", "--frames", "2"});
   ASSERT_EQ(third.status, 0) << third.err;
+  const nlohmann::json then = profile_of(path("whole"))["frames"], now = profile_of(path("third"))["frames"];
+  for (std::size_t f = 0; f < 2; ++f) {  // frame 3 of the second is frame 13 of the first
+    EXPECT_EQ(now[f]["time_s"], then[14 + f]["time_s"]) << f;
+    EXPECT_EQ(now[f]["state_hash"], then[14 + f]["state_hash"]) << f;
+  }
+  const Result clock = run(folder(), {"check", "replay.toml", "--set", "from={run=\"second\",frame=3,clock=0.2}"});
+  EXPECT_EQ(clock.status, 0) << clock.err;
+  const Result wrong = run(folder(), {"replay", "replay.toml", "--no-images", "--out", "wrong", "--set",
+                                      "from={run=\"second\",frame=3,clock=0.2}"});
+  EXPECT_NE(wrong.err.find("frame 3 of second ended at 0.466666667 s, and not at 0.2 s"), std::string::npos)
+      << wrong.err;
+}
+
+TEST_F(EarlierRun, KeepsTheClockWhereItHasAnotherRate) {
+  const Result finer = go_on("finer", {"--frame", "9", "--frames", "4", "--no-images", "--set", "fps=60"});
+  ASSERT_EQ(finer.status, 0) << finer.err;
+  const nlohmann::json frames = profile_of(path("finer"))["frames"];
+  EXPECT_NEAR(frames[0]["time_s"].get<double>(), 10.0 / 30 + 1.0 / 60, 1e-12);
+  EXPECT_NEAR(frames[3]["time_s"].get<double>(), 12.0 / 30, 1e-12);
+  const Result later = run(folder(), {"render", "bar.toml", "--out", "coarse", "--no-images", "--frames", "2", "--from",
+                                      "finer", "--frame", "3", "--set", "fps=30"});
+  ASSERT_EQ(later.status, 0) << later.err;
+  EXPECT_NEAR(profile_of(path("coarse"))["frames"][0]["time_s"].get<double>(), 13.0 / 30, 1e-12);
+  const Result between = go_on("refused", {"--frame", "9", "--no-images", "--set", "fps=25"});
+  EXPECT_EQ(between.status, 2);
+  EXPECT_NE(between.err.find("ends at 0.333333 s, which is between two frames of this film, at 25 a second"),
+            std::string::npos)
+      << between.err;
+}
+
+// Bodies of one table, and bodies that touch.
+TEST_F(EarlierRun, GoesOnWithManyBodiesOfAFew) {
+  std::ofstream(path("pile.toml")) << R"(frames = 20
+[[body]]
+name = "lump"
+box = { extent = [0.1, 0.1, 0.1], cells = [2, 2, 2] }
+material = "jelly"
+start_inside = "move"
+[[scatter]]
+bodies = ["lump"]
+count = 6
+box = [[0, 0, 0], [0.15, 0.3, 0.15]]
+[[collider]]
+shape = { half_space = { normal = [0, 1, 0], offset = 0.01 } }
+)";
+  ASSERT_EQ(run(folder(), {"render", "pile.toml", "--out", "pile", "--no-images"}).status, 0);
+  const Result later = run(folder(), {"render", "pile.toml", "--out", "rest", "--no-images", "--frames", "4", "--from",
+                                      "pile", "--frame", "15"});
+  ASSERT_EQ(later.status, 0) << later.err;
+  EXPECT_EQ(profile_of(path("rest"))["frames"][3]["state_hash"], profile_of(path("pile"))["frames"][19]["state_hash"]);
+  EXPECT_EQ(later.err.find("before the first frame"), std::string::npos) << later.err;
+  EXPECT_EQ(later.err.find("overlap at the start"), std::string::npos) << later.err;
 }
 
 TEST_F(EarlierRun, IsResumedWithTheSameBits) {
@@ -168,6 +232,8 @@ TEST_F(EarlierRun, RefusesByNameWhatCannotGoOn) {
   told({"--frame", "9", "--preview"}, "a preview has other meshes");
   const Result nowhere = run(folder(), {"render", "bar.toml", "--from", "nowhere", "--out", "refused"});
   EXPECT_NE(nowhere.err.find("nowhere: no such folder"), std::string::npos) << nowhere.err;
+  const Result empty = run(folder(), {"render", "bar.toml", "--from", "", "--out", "refused"});
+  EXPECT_NE(empty.err.find("--from: names no folder"), std::string::npos) << empty.err;
   const Result alone = run(folder(), {"render", "bar.toml", "--frame", "3", "--out", "refused"});
   EXPECT_NE(alone.err.find("--frame requires --from"), std::string::npos) << alone.err;
   const std::string free = R"(frames = 3
@@ -191,6 +257,8 @@ material = { model = "neo-hookean", mu = 2e4, lambda = 4e4 }
   std::ofstream(path("free.toml"), std::ios::app) << "density = 300\n";
   const Result changed = render("free.toml");
   EXPECT_NE(changed.err.find("density is 300 here and was"), std::string::npos) << changed.err;
+  EXPECT_NE(changed.err.find("are made again, for which its scene has to be as it was"), std::string::npos)
+      << changed.err;
   // The second cloth has as many vertices as the first, and other triangles.
   const std::string cloth = "[[body]]\nname = \"sheet\"\ncloth = { extent = [1, 1], stretch = 100, cells = ";
   std::ofstream(path("square.toml")) << "frames = 2\n" << cloth << "[8, 8] }\n";

@@ -153,6 +153,21 @@ TEST(Info, TellsOfASurfaceTheVolumeThatBecomesABody) {
   const Result result = run(folder.path, {"info", "nested.obj"});
   ASSERT_EQ(result.status, 0) << result.err;
   expect_lines(result.out, {"piece 1         1 x 1 x 1, volume 1, 24 triangles\n"});
+  EXPECT_EQ(result.out.find("cloth"), std::string::npos) << result.out;
+}
+
+TEST(Info, TellsOfAnOpenSurfaceThatItCanBeCloth) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path / "sheet.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+  TriMesh tent = test::box_surface(Vec3(0.5, 0.5, 0.5));
+  tent.triangles.conservativeResize(10, 3);
+  std::ofstream(folder.path / "tent.obj") << test::obj_text(tent);
+  const Result sheet = run(folder.path, {"info", "sheet.obj"});
+  EXPECT_EQ(sheet.status, 2);
+  expect_lines(sheet.err, {"cloth = { surface = \"sheet.obj\" }"});
+  const Result open = run(folder.path, {"info", "tent.obj"});
+  ASSERT_EQ(open.status, 0) << open.err;
+  expect_lines(open.out, {"cloth           ", "cloth = { surface = \"tent.obj\" }\n"});
 }
 
 // A lattice as fine as the volume of these asks for would take gigabytes and minutes.

@@ -10,6 +10,7 @@
 #include "support/bodies.h"
 #include "support/program.h"
 #include "support/replayed_film.h"
+#include "support/surfaces.h"
 
 namespace supple {
 namespace resume_test {
@@ -141,6 +142,48 @@ shape = "ball.toml"
   expect_refused("two.mesh", two_regions(2, 1));
   expect_refused("last.toml", "[[part]]\nsphere = { radius = 0.11 }\n");
   EXPECT_EQ(run(folder_.path, film({"--no-images", "--out", "a", "--resume", "--frames", "12"})).status, 0);
+}
+
+// The springs of a handle that lets go later hold energy where the film is resumed.
+TEST_F(ResumedFilm, FindsNoEnergyFromNothingWhereTheRunHadNone) {
+  std::ofstream(folder_.path / "hung.toml") << R"(frames = 12
+[[body]]
+name = "cube"
+box = { extent = [0.1, 0.1, 0.1], cells = [1, 1, 1] }
+material = "jelly"
+velocity = [0, 1, 0]
+[[body.handles]]
+name = "hand"
+select = { box = [[0, 0, 0], [1, 0.1, 1]] }
+stiffness = 30
+keys = [{ t = 0 }, { t = 0.1, move = [0.4, 0, 0] }]
+until = 0.2
+)";
+  const auto film = [&](const char* out, const char* frames) {
+    return run(folder_.path, {"render", "hung.toml", "--no-images", "--out", out, "--frames", frames, "--resume"});
+  };
+  ASSERT_EQ(film("whole", "12").status, 0);
+  ASSERT_EQ(film("cut", "4").status, 0);
+  ASSERT_EQ(film("cut", "12").status, 0);
+  const auto whole = test::profile_of(folder_.path / "whole")["frames"];
+  const auto cut = test::profile_of(folder_.path / "cut")["frames"];
+  for (std::size_t frame = 0; frame < 12; ++frame)
+    for (const char* key : {"from_nothing", "total", "put_in"})
+      EXPECT_NEAR(cut[frame]["bodies"][0]["energy"][key].get<double>(),
+                  whole[frame]["bodies"][0]["energy"][key].get<double>(), 1e-9)
+          << key << " in frame " << frame;
+}
+
+TEST_F(ResumedFilm, NamesTheColoursOfAModelThatHaveChanged) {
+  const auto write = [&](const char* name, const std::string& text) { std::ofstream(folder_.path / name) << text; };
+  write("red.obj", "mtllib red.mtl\nusemtl red\n" + test::obj_text(test::box_surface(Vec3(0.2, 0.2, 0.2))));
+  write("red.mtl", "newmtl red\nKd 1 0 0\n");
+  write("red.toml", "frames = 2\n[[body]]\nsurface = \"red.obj\"\nvertices = 60\nmaterial = \"jelly\"\n");
+  ASSERT_EQ(run(folder_.path, {"render", "red.toml", "--no-images", "--out", "red"}).status, 0);
+  write("red.mtl", "newmtl red\nKd 0 1 0\n");
+  const Result result = run(folder_.path, {"render", "red.toml", "--no-images", "--out", "red", "--resume"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("files.colours of red.obj.xxh64: "), std::string::npos) << result.err;
 }
 
 TEST_F(ResumedFilm, StartsAnewWhereThereIsNoCheckpointYet) {

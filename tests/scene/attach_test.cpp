@@ -1,7 +1,10 @@
 // Tests handles that go with a collider or with another body (`attach`).
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "geometry/triangles/surface_binding.h"
+#include "scene/building/warnings.h"
 #include "scene/definition/rotation.h"
 #include "support/played_world.h"
 #include "support/scene_text.h"
@@ -138,6 +141,18 @@ TEST(SurfaceBinding, PointsTurnAndStretchWithTheirTriangles) {
   EXPECT_LT((binding.points_at(turned) - ((points * turn.transpose()).rowwise() + move)).cwiseAbs().maxCoeff(), 1e-14);
   // A surface that grows to twice its size moves the places on it apart, and keeps the heights above it.
   EXPECT_LT((binding.points_at(2 * surface.points).row(0) - Eigen::RowVector3d(0.4, 0.6, 0.5)).norm(), 1e-15);
+}
+
+TEST(Attach, ToABodyThatKeepsFastVibrationsIsWarnedOf) {
+  const auto warned = [](const std::string& of_cube) {
+    const SceneDef scene = scene_of(bar_and_cube("attach = { body = \"cube\" }") + of_cube);
+    const std::vector<Problem> list = said(warnings(scene, assemble(scene)));
+    return std::ranges::any_of(list, [](const Problem& problem) {
+      return problem.message.starts_with("handle 'end' of body 'bar' will shake: it follows body 'cube'");
+    });
+  };
+  EXPECT_FALSE(warned(""));
+  EXPECT_TRUE(warned("solver = { integrator = \"implicit-midpoint\" }\n"));
 }
 
 }  // namespace attach_test

@@ -71,6 +71,18 @@ TEST(Meeting, IsLeftOutByABodyThatMeetsNone) {
   }
 }
 
+// One table makes bodies 2 to 4.
+TEST(Meeting, WithTheNameOfATableIsWithAllBodiesThatItMakes) {
+  const std::string copies = "[[scatter]]\nbodies = [\"c\"]\ncount = 3\nbox = [[0, 0, 0], [1, 1, 1]]\n";
+  const SceneDef scene = test::scene_of(cube("a", meets("[\"c\"]")) + cube("b") + cube("c") + copies);
+  for (std::size_t copy = 2; copy < 5; ++copy) EXPECT_TRUE(both_ways(scene, 0, copy)) << copy;
+  EXPECT_FALSE(both_ways(scene, 0, 1));
+  const SceneDef own = test::scene_of(cube("a") + cube("c", meets("[\"c\"]")) + copies);
+  EXPECT_TRUE(both_ways(own, 1, 2));
+  EXPECT_FALSE(both_ways(own, 0, 1));
+  EXPECT_EQ(test::problems_of(cube("a", meets("[\"d\"]")) + cube("c") + copies).size(), 1u);
+}
+
 TEST(Meeting, OfABodyWithAListIsWithTheseAlone) {
   const SceneDef scene =
       test::scene_of(cube("a", meets("[\"b\"]")) + cube("b") + cube("c") + cube("d", meets("[\"a\"]")));

@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <set>
 
 #include "baselines/make_rule.h"
+#include "scene/building/solver_warnings.h"
 #include "scene/building/warnings.h"
 #include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
+#include "support/played_world.h"
 #include "support/scene_text.h"
 
 namespace supple {
@@ -193,6 +196,82 @@ TEST(Chebyshev, WithoutAnIterationLeftToAccelerateIsWarnedOf) {
   EXPECT_EQ(warning("method = \"chebyshev\"\nchebyshev_delay = 9"), "nothing");
   EXPECT_EQ(warning("method = \"chebyshev\""), "nothing");
   EXPECT_EQ(warning("chebyshev_delay = 10"), "nothing");
+}
+
+const std::string spinning_cube = R"(fps = 120
+frames = 60
+gravity = [0, 0, 0]
+[[body]]
+name = "cube"
+box = { extent = [0.2, 0.2, 0.2], cells = [6, 6, 6] }
+density = 1000
+material = { model = "neo-hookean", young = 1e5, poisson = 0.3 }
+spin_deg = [0, 0, 100]
+)";
+
+// Returns what `check` says of a scene, line by line.
+std::string said_of(const std::string& scene, const std::vector<std::string>& settings) {
+  const Script script = Script::load(SceneSource("scene.toml", scene), test::assets, settings);
+  std::string text;
+  for (const Problem& problem : said(warnings(script.scene(), assemble(script.scene()))))
+    text += problem.message + "\n";
+  return text;
+}
+
+// Returns the mean angular velocity about the z axis [rad/s].
+double spin_of(const World& world) {
+  const State& state = world.body(0).state();
+  const Eigen::RowVector3d middle = state.x.colwise().mean();
+  double turned = 0, reach = 0;
+  for (Eigen::Index v = 0; v < state.x.rows(); ++v) {
+    const Eigen::RowVector3d arm = state.x.row(v) - middle;
+    turned += arm.x() * state.v(v, 1) - arm.y() * state.v(v, 0);
+    reach += arm.x() * arm.x() + arm.y() * arm.y();
+  }
+  return turned / reach;
+}
+
+TEST(DampingOfAFreeBody, TakesItsSpinAtTheRateThatIsForetold) {
+  const auto spin_after = [](const std::string& damping) {
+    World world =
+        test::world_of(SceneSource("scene.toml", spinning_cube), {"solver.damping=" + damping, "solver.iterations=30"});
+    for (int frame = 0; frame < 60; ++frame) EXPECT_TRUE(world.play(frame));
+    return std::pair(spin_of(world), loss_of_spin(world.bodies()[0]));
+  };
+  const auto [undamped, none] = spin_after("0");
+  const auto [damped, rate] = spin_after("1.5e-4");
+  EXPECT_EQ(none, 0);
+  const double measured = std::log(undamped / damped) / 0.5;  // of half a second [1/s]
+  EXPECT_GT(measured, 0.8);
+  EXPECT_NEAR(rate, measured, 0.25 * measured);
+}
+
+TEST(DampingOfAFreeBody, IsWarnedOfWhereItKeepsTheBodyFromTurning) {
+  const std::string slow = "will hardly roll or turn";
+  EXPECT_NE(said_of(spinning_cube, {"solver.damping=0.001"}).find(slow), std::string::npos);
+  EXPECT_EQ(said_of(spinning_cube, {"solver.damping=1e-6"}), "");
+  EXPECT_EQ(said_of(spinning_cube, {"solver.calming=50"}), "");
+  EXPECT_EQ(said_of(spinning_cube, {"solver.damping=0.001", "body.cube.meant=[\"turning\"]"}), "");
+  const std::string held = "[[body.handles]]\nname = \"end\"\nselect = { box = [[0, 0, 0], [0.1, 1, 1]] }\n";
+  EXPECT_EQ(said_of(spinning_cube + held, {"solver.damping=0.001"}), "");
+}
+
+TEST(MatrixOfAScene, IsWarnedOfWhereItServesNoBody) {
+  const std::string idle = "changes nothing here";
+  const std::string cloth =
+      "gravity = [0, 0, 0]\n[[body]]\nname = \"sheet\"\nmaterial = \"cotton\"\ncloth = { extent = [1, 1], cells = [4, "
+      "4] }\n";
+  const auto tells = [&](const std::string& scene, const std::vector<std::string>& settings) {
+    return said_of(scene, settings).find(idle) != std::string::npos;
+  };
+  const std::string turned = "solver.matrix=turned-hessian", tangent = "solver.matrix=tangent";
+  EXPECT_TRUE(tells(cloth, {turned}));
+  EXPECT_FALSE(tells(cloth, {tangent}));
+  EXPECT_FALSE(tells(cloth, {}));
+  EXPECT_FALSE(tells(spinning_cube, {turned}));
+  EXPECT_FALSE(tells(spinning_cube + cloth.substr(cloth.find("[[body]]")), {turned}));
+  EXPECT_TRUE(tells(spinning_cube, {tangent, "solver.integrator=implicit-midpoint"}));
+  EXPECT_TRUE(tells(spinning_cube, {tangent, "solver.method=newton"}));
 }
 
 }  // namespace method_test

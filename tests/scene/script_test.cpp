@@ -352,6 +352,26 @@ TEST_F(Replay, RampsBeginAtDefaults) {
   EXPECT_TRUE(std::ranges::any_of(script("").live(), [&](const LiveKey& key) { return key.key.path == listed; }));
 }
 
+// What a table of cloth calls its density is a mass by area.
+TEST(LiveValues, HaveTheUnitsOfTheirBodies) {
+  const Script script = Script::load(SceneSource("scene.toml", R"([[body]]
+name = "sheet"
+cloth = { extent = [1, 1], cells = [2, 2] }
+material = "silk"
+density = 0.05
+[[body]]
+name = "cube"
+box = { extent = [1, 1, 1], cells = [1, 1, 1] }
+material = "jelly"
+density = 900
+)"),
+                                     test::assets, {});
+  std::string units;
+  for (const LiveKey& key : script.live())
+    if (key.key.generic == "body[].density") units += key.key.path + " " + key.key.unit + "\n";
+  EXPECT_EQ(units, "body.sheet.density kg/m^2\nbody.cube.density kg/m^3\n");
+}
+
 TEST_F(Replay, ListsWhatCanChange) {
   const std::vector<LiveKey> live = script("").live();
   const auto find = [&](const std::string& path) -> const LiveKey* {

@@ -98,8 +98,9 @@ TEST_F(SurfaceScene, PiecesMeetEachOtherUnlessTheirTableSaysOtherwise) {
   EXPECT_TRUE(meet(scene_of(pieces), 0, 1));
   EXPECT_TRUE(meet(scene_of(pieces + "contact = { meets = [\"toy_1\", \"toy_2\"] }\n"), 0, 1));
   EXPECT_FALSE(meet(scene_of(pieces + "contact = { meets = false }\n"), 0, 1));
-  EXPECT_EQ(refusal_of(pieces + "contact = { meets = [\"toy\"] }\n"),
-            "meets = 'toy': must be the name of another body: toy_2; did you mean 'toy_2'?");
+  EXPECT_TRUE(meet(scene_of(pieces + "contact = { meets = [\"toy\"] }\n"), 0, 1));
+  EXPECT_EQ(refusal_of(pieces + "contact = { meets = [\"tyo\"] }\n"),
+            "meets = 'tyo': must be the name of another body: toy_2; did you mean 'toy'?");
 }
 
 TEST_F(SurfaceScene, PiecesThatTouchBecomeOneBodyByWhatLiesBetween) {
@@ -112,6 +113,18 @@ TEST_F(SurfaceScene, PiecesThatTouchBecomeOneBodyByWhatLiesBetween) {
   EXPECT_EQ(manifoldness(mesh).pieces, 1);
   EXPECT_NEAR(bounds_of(mesh.rest).extent().x(), 4.01, 0.05);
   EXPECT_EQ(scene_of("surface = \"near.obj\"\npieces = \"bodies\"\n").bodies.size(), 2u);
+}
+
+TEST_F(SurfaceScene, WhatIsTooLargeIsRefusedWithAWayOut) {
+  write("huge.obj", obj_text(test::box_surface(Vec3(1e8, 1e8, 1e8))));
+  const SceneDef scene = scene_of("surface = \"huge.obj\"\n");
+  try {
+    (void)UnplacedBodies().get(scene, scene.bodies.at(0));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("is larger than 1e6 m"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("`size` or `units`"), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(SurfaceScene, WhatIsThinnerThanAnElementIsHeldByElementsAroundIt) {

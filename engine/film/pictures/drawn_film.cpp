@@ -89,7 +89,7 @@ void DrawnFilm::hide_legend() {
 
 // Adds a half transparent copy of each body, which moves as another run's body does.
 void DrawnFilm::add_ghosts(const SceneDef& scene, const std::vector<Body>& bodies) {
-  ghosts_.emplace(scene.look.ghost, bodies);
+  ghosts_.emplace(scene.look.ghost, scene, bodies);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     DrawMesh ghost = stage_.meshes[b];
     ghost.name.clear();

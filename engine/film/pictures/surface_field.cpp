@@ -160,7 +160,7 @@ std::vector<std::pair<double, std::string>> ticks_between(double low, double hig
 
 SurfaceField::SurfaceField(const SceneDef& scene, const std::vector<Body>& bodies)
     : def_(scene.field), fps_(scene.fps), bodies_(bodies), elements_(bodies.size()) {
-  if (def_.quantity == FieldQuantity::distance) reference_.emplace(def_.reference, bodies);
+  if (def_.quantity == FieldQuantity::distance) reference_.emplace(def_.reference, scene, bodies);
   areas_.resize(bodies.size());
   double reach = 0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {

@@ -12,6 +12,7 @@
 #include "base/trace.h"
 #include "base/variants.h"
 #include "film/plan/preview.h"
+#include "film/plan/run_plan.h"
 #include "film/plan/shipped_files.h"
 #include "film/plan/slow_work_line.h"
 #include "output/files/json_text.h"
@@ -64,6 +65,27 @@ SceneSource source_of(const FilmPlan& plan) {
 
 namespace {
 
+// Returns the setting for the clock of a film that goes on from a run; empty where the frame's number tells it. A run
+// that is gone is left to those who need more of it.
+std::string clock_setting(const SceneDef& scene) {
+  if (!scene.from || scene.from->clock || !is_run(scene.from->run)) return "";
+  const double time = time_in_run(read_run(scene.from->run), scene.from->frame);
+  return time == scene.time_at_start() ? "" : fmt::format("from.clock={}", time);
+}
+
+}  // namespace
+
+Script load_script(const SceneSource& source, std::vector<std::string>& settings,
+                   std::optional<std::size_t> sweep_point) {
+  Script script = Script::load(source, assets_folder(), settings, sweep_point);
+  const std::string clock = clock_setting(script.scene());
+  if (clock.empty()) return script;
+  settings.push_back(clock);
+  return Script::load(source, assets_folder(), settings, sweep_point);
+}
+
+namespace {
+
 // Returns the XXH64 of the points and elements of a body.
 std::string mesh_hash(const Body& body) {
   const TetMesh& mesh = body.description.mesh;
@@ -98,11 +120,10 @@ RunInfo run_info(const FilmPlan& plan, const SceneSource& source, const World& w
   return info;
 }
 
-LoadedFilm film_with(const FilmPlan& plan, const std::vector<std::string>& settings,
-                     const std::vector<std::string>& command) {
+LoadedFilm film_with(const FilmPlan& plan, std::vector<std::string> settings, const std::vector<std::string>& command) {
   Zone zone("read scene");
   const SceneSource source = source_of(plan);
-  Script script = Script::load(source, assets_folder(), settings, plan.sweep_point);
+  Script script = load_script(source, settings, plan.sweep_point);
   check_save_states(plan.save_states, script.scene(), {}, 0);
   zone.next("assemble meshes");
   SlowWorkLine tells(plan.quiet);
@@ -110,7 +131,7 @@ LoadedFilm film_with(const FilmPlan& plan, const std::vector<std::string>& setti
   World world(std::move(script), std::move(bodies));
   RunInfo info = run_info(plan, source, world);
   info.command = command;
-  info.settings = settings;
+  info.settings = std::move(settings);
   return {std::move(world), {}, std::move(info)};
 }
 

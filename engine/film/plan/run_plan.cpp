@@ -80,6 +80,23 @@ FilmPlan plan_of_run(const RunRecord& run, const std::filesystem::path& scene,
   return film;
 }
 
+double time_in_run(const RunRecord& run, int frame) {
+  try {
+    const Json scene = parsed_json<Json>(run.info_json).at("scene");
+    SceneDef clock;
+    if (const auto rate = scene.find("fps"); rate != scene.end())
+      clock.fps = rate->is_string() ? FrameRate::parse(rate->get<std::string>()).value_or(clock.fps)
+                                    : FrameRate(rate->get<double>());
+    if (const auto from = scene.find("from"); from != scene.end()) {
+      clock.from.emplace().frame = from->at("frame").get<int>();
+      if (from->contains("clock")) clock.from->clock = from->at("clock").get<double>();
+    }
+    return clock.time_after(frame);
+  } catch (const Json::exception&) {
+    throw InputError((run.folder / "run.json").string(), "is damaged: it does not tell the rate of the run's frames");
+  }
+}
+
 namespace {
 
 // Keeps only those changes of a replay that change what is simulated.
@@ -110,9 +127,9 @@ void check_same_motion(const RunRecord& run, const LoadedFilm& film) {
         difference.path == "output" && (difference.a + difference.b).find("energy") == std::string::npos;
     if (seen_output) continue;
     problems.push_back({film.info.scene_file, 0, 0,
-                        fmt::format("{} is {} here and was {} in the run: only what is seen may differ (camera, look, "
-                                    "output's width, height, samples, blur_samples and passes, colours, labels, "
-                                    "patterns, colliders being visible)",
+                        fmt::format("{} is {} here and was {} in the run: only what is seen may differ (title, "
+                                    "camera, look, field, text, output's size, width, height, samples, blur_samples "
+                                    "and passes, colours, labels, patterns, colliders being visible)",
                                     difference.path, difference.b, difference.a)});
   }
   if (simulated_part(member_text(info, "replay")) != simulated_part(film.info.replay_json))

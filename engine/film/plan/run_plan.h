@@ -12,6 +12,10 @@ namespace supple {
 FilmPlan plan_of_run(const RunRecord& run, const std::filesystem::path& scene,
                      const std::vector<std::string>& settings);
 
+// Returns the time at the end of a run's frame, as the run's own clock tells it [s]; of frame -1, when the clock
+// starts.
+double time_in_run(const RunRecord& run, int frame);
+
 // Refuses a film that would move in another way than the run did: one with other values than those of what is seen,
 // other changes, or other meshes. Throws InputError with all differences.
 void check_same_motion(const RunRecord& run, const LoadedFilm& film);

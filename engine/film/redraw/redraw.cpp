@@ -119,7 +119,8 @@ LoadedDrawing load_drawing(const DrawPlan& plan) {
   drawing.forces = forces_of(run, drawing.film);
   drawing.frame_count = frames_with_motion(drawing);
   drawing.frames = frames_of(plan, drawing.frame_count);
-  check_references(drawing.film.world.script().scene(), drawing.film.world.bodies(), drawing.frames.back());
+  check_references(drawing.film.world.script().scene(), drawing.film.world.bodies(), drawing.frames.front(),
+                   drawing.frames.back());
   drawing.rate = plan.rate.value_or(drawing.film.world.script().scene().fps.over(plan.every));
   Json identity = {
       {"program", program_version()},

@@ -282,7 +282,10 @@ WindingSolid winding_solid(const Numbered& surface, const std::string& name, Thr
   const TriangleSoup soup(oriented.mesh);
   result.cell = suitable_cell(oriented.mesh);
   constexpr double most_loose = 0.65;  // a solid with this much loose around it is a sheet with a bulge
-  const std::string thin = "encloses no volume: thicken = 0.01 makes a solid of that thickness [m] around its sheets";
+  const std::string thin = fmt::format(
+      "encloses no volume: thicken = 0.01 makes a solid of that thickness [m] around its sheets; a body that is cloth "
+      "takes them as they are: cloth = {{ surface = \"{}\" }}",
+      name);
   constexpr double shortness = 1.0 / 48;  // of the edges for the winding number, by the box's diagonal
   const TriangleSoup field(with_short_edges(oriented.mesh, shortness * bounds_of(oriented.mesh.points).diagonal()));
   const std::vector<Side> sides = sides_of(soup, field, result, threads);

@@ -80,7 +80,9 @@ void check_bounds(const Shape& shape, const std::string& source) {
   const Bounds box = shape.bounds();
   if (box.empty()) throw InputError(source, "the shape is empty: add a part such as sphere = { radius = 0.1 }");
   if (box.extent().maxCoeff() > 1e6)
-    throw InputError(source, "the shape is unbounded: a half space can cut or intersect a body, but not be one");
+    throw InputError(source,
+                     "is larger than 1e6 m, or unbounded: a half space can cut or intersect a body, but not be one; "
+                     "`size` or `units` make a surface smaller");
 }
 
 void check_inside(double volume, const std::string& source) {

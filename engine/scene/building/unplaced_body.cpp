@@ -117,7 +117,7 @@ Body body_of_surface(const BodyDef& def, const SlowWork& work) {
   take(body, mesh_of_surface({solid, read.touching}, wanted_mesh(body, def), work));
   if (def.takes_colors_of_file()) body.colors = read.colors[def.piece];
   // The drawn skin depends on the colours; the tetrahedra above do not.
-  if (body.colors) body.files.push_back({def.surface, body.colors->hash});
+  if (body.colors) body.files.push_back({"colours of " + def.surface.filename().string(), body.colors->hash});
   if (def.colors == ColorSource::file && !body.colors)
     body.notes.push_back("the file has no colours (colors = \"file\"): the body's own is drawn");
   return body;

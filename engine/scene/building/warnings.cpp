@@ -10,6 +10,7 @@
 #include "scene/building/body_passings.h"
 #include "scene/building/collision_set.h"
 #include "scene/building/overlaps.h"
+#include "scene/building/solver_warnings.h"
 #include "scene/building/thin_bodies.h"
 #include "scene/definition/meeting.h"
 #include "sim/measures/measures.h"
@@ -133,14 +134,14 @@ bool may_stop_a_fall(const SceneCollider& collider, const Bounds& shaft) {
 void warn_of_fall(const SceneDef& scene, const Body& body, std::vector<Warning>& list) {
   const double size = bounds_of(body.description.mesh.rest).diagonal(), duration = scene.fps.time_of(scene.frames);
   for (std::size_t h = 0; h < body.description.handles.size(); ++h) {
-    if (body.def.handles[h].from < duration) return;
+    if (body.def.handles[h].from < scene.time_at_start() + duration) return;
   }
-  Bounds shaft =
-      bounds_of(start_positions(body.def.start, body.description.mesh.rest, body.seed, body.description.name));
+  Bounds shaft = bounds_of(first_positions(body));
+  const Vec3 velocity = body.from ? Vec3(body.from->v.colwise().mean().transpose()) : body.def.velocity;
   const double bottom = shaft.lower.y(), g = -scene.gravity.y();
-  const double lowest = bottom + body.def.velocity.y() * duration - 0.5 * g * duration * duration;
+  const double lowest = bottom + velocity.y() * duration - 0.5 * g * duration * duration;
   if (g <= 0 || bottom < -0.01 * size || lowest > -0.5 * size) return;
-  const Vec3 drift = body.def.velocity * duration + 0.5 * duration * duration * scene.gravity;
+  const Vec3 drift = velocity * duration + 0.5 * duration * duration * scene.gravity;
   shaft.include(shaft.lower + drift);
   shaft.include(shaft.upper + drift);
   for (const SceneCollider& collider : collision_set(scene).scene_colliders) {
@@ -152,8 +153,6 @@ void warn_of_fall(const SceneDef& scene, const Body& body, std::vector<Warning>&
                                 body.def.name)));
 }
 
-// Warns of bodies that start in the same place, whether they meet or pass through each other, or in themselves. Either
-// of them may say that it is meant.
 // Warns of colliders that deform so fast that a body may be hit before its elements can give way: where a part of the
 // surface goes further in a step than a tenth of the smallest body.
 void warn_of_fast_surfaces(const SceneDef& scene, const std::vector<Body>& bodies, std::vector<Warning>& list) {
@@ -175,6 +174,35 @@ void warn_of_fast_surfaces(const SceneDef& scene, const std::vector<Body>& bodie
   }
 }
 
+// Warns of handles that follow a body whose velocities keep fast vibrations, because implicit midpoint damps none: the
+// handle shakes by a step's length of these. A cube of rubber on springs of 50 N/m exploded within 24 frames.
+void warn_of_followed(const std::vector<Body>& bodies, std::vector<Warning>& list) {
+  const auto followed = [&bodies](const HandleDef& handle) {
+    return std::ranges::any_of(bodies, [&handle](const Body& body) {
+      return handle.attach && handle.attach->body == body.def.name &&
+             body.def.solver.integrator == Integrator::implicit_midpoint;
+    });
+  };
+  for (const Body& body : bodies) {
+    for (const HandleDef& handle : body.def.handles) {
+      if (!followed(handle)) continue;
+      list.push_back(
+          at(WarningKind::handle, handle.select.place,
+             fmt::format("handle '{}' of body '{}' will shake: it follows body '{}', whose implicit-midpoint "
+                         "keeps fast vibrations; backward-euler there, or a collider, leads smoothly",
+                         handle.name, body.def.name, handle.attach->body)));
+      list.back().meant = is_meant(body.def, WarningKind::handle);
+    }
+  }
+}
+
+// Tells whether an overlap is only that of bodies that touch, in a film that goes on from another one.
+bool is_contact_of_earlier_run(const std::vector<Body>& bodies, const BodyDepth& overlap) {
+  return bodies[overlap.a].from && bodies[overlap.b].from && overlap.share <= DeepBodies::deep;
+}
+
+// Warns of bodies that start in the same place, whether they meet or pass through each other, or in themselves. Either
+// of them may say that it is meant.
 void warn_of_shared_space(const std::vector<Body>& bodies, std::vector<Warning>& list) {
   std::vector<Positions> points;
   for (const Body& body : bodies) points.push_back(first_positions(body));
@@ -199,10 +227,9 @@ void warn_of_shared_space(const std::vector<Body>& bodies, std::vector<Warning>&
                            bodies[a].def.name, bodies[b].def.name)
              : fmt::format("bodies '{}' and '{}' pass through each other from the start on: these two do not meet",
                            bodies[a].def.name, bodies[b].def.name));
-  for (const BodyDepth& overlap : overlaps_of_bodies(bodies, points))
-    warn(overlap.a, overlap.b, start_overlap_text(bodies, overlap));
-  for (const BodyDepth& overlap : bodies_in_themselves(bodies, points))
-    warn(overlap.a, overlap.b, start_overlap_text(bodies, overlap));
+  for (const auto& overlaps : {overlaps_of_bodies(bodies, points), bodies_in_themselves(bodies, points)})
+    for (const BodyDepth& overlap : overlaps)
+      if (!is_contact_of_earlier_run(bodies, overlap)) warn(overlap.a, overlap.b, start_overlap_text(bodies, overlap));
 }
 
 }  // namespace
@@ -297,13 +324,15 @@ std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bo
                                     "solver has one level; solver.levels = 2 mends it",
                                     body.def.name)));
     }
+    if (std::string slow = damping_text(scene, body); !slow.empty())
+      list.push_back(at(WarningKind::turning, body.def.place, std::move(slow)));
     if ((crossing > stiff_crossing || is_stiff_cloth(body)) && body.def.solver.settings.iterations <= 10) {
       list.push_back(at(WarningKind::stiffness, body.def.place,
                         fmt::format("body '{}' is stiff for {} iterations a step; more solver.iterations or "
                                     "substeps make its motion sharper",
                                     body.def.name, body.def.solver.settings.iterations)));
     }
-    if (!body.overlaps.empty() && body.def.start_inside != StartInside::push)
+    if (!body.overlaps.empty() && !body.from && body.def.start_inside != StartInside::push)
       list.push_back(at(WarningKind::inside, body.def.place, overlap_text(body)));
     warn_of_fall(scene, body, list);
     warn_of_substance(body, list);
@@ -317,6 +346,9 @@ std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bo
   }
   warn_of_shared_space(bodies, list);
   warn_of_fast_surfaces(scene, bodies, list);
+  warn_of_followed(bodies, list);
+  if (std::string idle = idle_matrix_text(bodies); !idle.empty())
+    list.push_back({std::nullopt, {bodies.front().def.place, std::move(idle)}});
   return list;
 }
 

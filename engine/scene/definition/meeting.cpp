@@ -19,7 +19,8 @@ bool allows_meeting(const BodyDef& body, const BodyDef& other) {
 }  // namespace
 
 bool asks_to_meet(const BodyDef& body, const BodyDef& other) {
-  return body.contact.meets && std::ranges::find(*body.contact.meets, other.name) != body.contact.meets->end();
+  const auto is_other = [&other](const std::string& name) { return name == other.name || name == other.table; };
+  return body.contact.meets && std::ranges::any_of(*body.contact.meets, is_other);
 }
 
 bool both_allow_meeting(const BodyDef& a, const BodyDef& b) { return allows_meeting(a, b) && allows_meeting(b, a); }

@@ -4,6 +4,7 @@
 // depends on scene files or TOML (scene_reader.h).
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -420,8 +421,9 @@ struct OutputDef {
 
 // Names the frame of an earlier run with whose end a film begins.
 struct EarlierFrame {
-  std::filesystem::path run;  // the folder of the run
-  int frame = 0;              // of the run
+  std::filesystem::path run;    // the folder of the run
+  int frame = 0;                // of the run
+  std::optional<double> clock;  // time at the end of that frame; nothing: (frame + 1) / fps of this film [s]
   FilePlace place;
 };
 
@@ -446,8 +448,12 @@ struct SceneDef {
   std::filesystem::path assets;
 
   double time_step() const { return 1 / (fps * substeps); }
-  // Returns how many frames the clock has behind it when the film begins. Frames of the film are counted from 0.
-  int frames_before() const { return from ? from->frame + 1 : 0; }
+  // Returns how many frames, of this film's rate, the clock has behind it when the film begins. Frames of the film are
+  // counted from 0.
+  int frames_before() const {
+    if (!from) return 0;
+    return from->clock ? static_cast<int>(std::lround(*from->clock * fps)) : from->frame + 1;
+  }
   // Returns the time at which the film begins [s].
   double time_at_start() const { return fps.time_of(frames_before()); }
   // Returns the time after the steps of a frame [s], which its picture shows: its caption, the contact sheet, the run's

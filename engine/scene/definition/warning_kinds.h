@@ -10,7 +10,7 @@ namespace supple {
 enum class WarningKind {
   slivers,    // flat elements
   handle,     // a handle jumps when it grabs, or is soft for its load
-  turning,    // one level keeps the body from turning
+  turning,    // the solver, by one level or by damping, keeps the body from turning
   stiffness,  // the body is stiffer than the iterations can solve
   inside,     // the body starts inside a collider
   fall,       // the body falls through the ground that the film shows

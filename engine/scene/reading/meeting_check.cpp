@@ -34,6 +34,14 @@ std::vector<std::string> others_of(const SceneDef& scene, const BodyDef& body) {
   return names;
 }
 
+// Returns the names of tables that make several bodies, each of which stands for all of these.
+std::vector<std::string> tables_of(const SceneDef& scene) {
+  std::vector<std::string> names;
+  for (const BodyDef& body : scene.bodies)
+    if (body.table != body.name && std::ranges::find(names, body.table) == names.end()) names.push_back(body.table);
+  return names;
+}
+
 bool shares_list(const SceneDef& scene, const BodyDef& body) {
   return std::ranges::any_of(scene.bodies,
                              [&body](const BodyDef& other) { return &other != &body && other.place == body.place; });
@@ -48,10 +56,12 @@ std::string allowed_names(const std::vector<std::string>& others) {
 
 void check_names(const SceneDef& scene, const BodyDef& body, Complaints& complaints) {
   const std::vector<std::string> others = others_of(scene, body);
+  std::vector<std::string> known = tables_of(scene);
+  known.insert(known.end(), others.begin(), others.end());
   for (const std::string& name : *body.contact.meets) {
-    if (std::ranges::find(others, name) != others.end()) continue;
+    if (std::ranges::find(known, name) != known.end()) continue;
     if (name != body.name) {
-      complaints.add(body, name, fmt::format("must be {}{}", allowed_names(others), did_you_mean(name, others)));
+      complaints.add(body, name, fmt::format("must be {}{}", allowed_names(others), did_you_mean(name, known)));
     } else if (!shares_list(scene, body)) {
       complaints.add(body, name,
                      fmt::format("whether a body meets itself is said by self; must be {}", allowed_names(others)));

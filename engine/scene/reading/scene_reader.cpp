@@ -94,7 +94,7 @@ SceneDef read_scene(Config& config) {
   scene.gravity = root.vector({"gravity", "m/s^2", "acceleration of free fall"}, scene.gravity);
   scene.seed = static_cast<std::uint64_t>(
       root.integer({"seed", "", "of random start states and of gusts"}, 1, Range::between(0, 2e9)));
-  scene.from = read_from(root);
+  scene.from = read_from(root, scene.fps);
   scene.wind = read_wind(root, scene.seed);
   SolverDef defaults;
   if (const auto solver = root.table({"solver", "", "for all bodies"})) defaults = read_solver(*solver, defaults);

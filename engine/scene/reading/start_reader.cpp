@@ -1,5 +1,6 @@
 // Reads the table `start` of a body.
 #include <array>
+#include <cmath>
 
 #include "base/names.h"
 #include "base/text.h"
@@ -60,14 +61,24 @@ constexpr std::array start_keys = {
 
 }  // namespace
 
-std::optional<EarlierFrame> read_from(const ConfigTable& root) {
+std::optional<EarlierFrame> read_from(const ConfigTable& root, const FrameRate& fps) {
   const auto table = root.table({"from", "", "the frame of an earlier run with whose end this film begins"});
   if (!table) return std::nullopt;
   EarlierFrame from;
   from.run =
       table->text({"run", "", "folder of the run: bodies of the same name go on from where they were"}, std::nullopt);
   from.frame = table->integer({"frame", "", "of that run, counted from 0"}, std::nullopt, Range::between(0, 1000000));
+  from.clock = table->number_if_given(
+      {"clock", "s", "time at the end of that frame; filled in where it is not (frame + 1) / fps of this film"},
+      Range::at_least(0));
   from.place = table->place("run");
+  constexpr double least = 1e-6;  // share of a frame, far above round-off
+  const double frames = from.clock.value_or(0) * fps;
+  if (std::abs(frames - std::round(frames)) > least)
+    table->complain(
+        "clock", fmt::format("frame {} of {} ends at {:g} s, which is between two frames of this film, at {} a second: "
+                             "choose another frame, or another fps",
+                             from.frame, from.run.string(), *from.clock, fps.text()));
   return from;
 }
 

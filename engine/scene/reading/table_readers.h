@@ -42,7 +42,7 @@ std::optional<DragCoefficients> read_drag(const ConfigTable& body);
 std::optional<GasFilling> read_pressure(const ConfigTable& body);
 
 // Reads [from] of a scene's root; nothing where it is absent.
-std::optional<EarlierFrame> read_from(const ConfigTable& root);
+std::optional<EarlierFrame> read_from(const ConfigTable& root, const FrameRate& fps);
 
 ColliderDef read_collider(const ConfigTable& table);
 

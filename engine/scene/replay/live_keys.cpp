@@ -3,6 +3,8 @@
 #include <array>
 #include <sstream>
 
+#include "scene/replay/script_parts.h"
+
 namespace supple {
 namespace {
 
@@ -140,6 +142,8 @@ std::vector<LiveKey> live_keys(const Config& config) {
     const auto cost = cost_of_change(key.path);
     if (!cost) continue;
     result.push_back({key, *cost});
+    if (key.generic == "body[].density" && config.value_at(table_of(key.path) + ".cloth"))
+      result.back().key.unit = "kg/m^2";               // a reader knows its keys before it knows what a body is made of
     constexpr std::string_view hard = "\"hard\" or ";  // a spring cannot become hard
     if (key.allowed.starts_with(hard)) result.back().key.allowed.erase(0, hard.size());
   }

@@ -88,6 +88,7 @@ void EnergyBudget::add_to_budget(double work) {
 void EnergyBudget::know_springs(const Model& model, const Positions& targets, const State& state) {
   if (knows_springs_) return;
   parts_.springs = spring_energy(model, targets, state.x);
+  lowest_ += parts_.springs;  // start() has left them out
   knows_springs_ = true;
 }
 
@@ -102,11 +103,10 @@ void EnergyBudget::before_step(const Model& model, const StepInputs& inputs, con
   now.springs = spring_energy(model, inputs.targets, state.x);
   begin_air(model, inputs, state, w.air);
   now.gas = w.air.gas_energy(model, state.x);
-  if (!knows_springs_) parts_.springs = now.springs;
+  know_springs(model, inputs.targets, state);
   add_to_budget(now.total() - parts_.total());
   parts_ = now;
   model_ = model.id;
-  knows_springs_ = true;
 }
 
 void EnergyBudget::after_step(const Model& model, const StepInputs& inputs, const Positions& q, const State& state,
