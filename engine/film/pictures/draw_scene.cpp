@@ -119,6 +119,7 @@ DrawMesh collider_mesh(const SceneCollider& collider, const Skin& skin) {
   mesh.color = collider_color(collider.def);
   mesh.gloss = collider_gloss;
   mesh.rest = bounds_of(at_pose(skin.rest.points, collider.pose(0)));
+  mesh.finish = collider.def.finish;
   mesh.framed = skin.rest.points.rows() > 0 && collider.def.shape.bounds().diagonal() < 1e6;
   return mesh;
 }
@@ -168,6 +169,7 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
     mesh.cloth = cloth_look(bodies[b].def, bodies[b].description.mesh.rest);
     mesh.gloss = gloss_of(bodies[b].def);
     mesh.wires = scene.look.wireframe;
+    mesh.finish = bodies[b].def.finish;
     mesh.rest = bounds_of(bodies[b].description.mesh.rest);
     stage.meshes.push_back(std::move(mesh));
   }

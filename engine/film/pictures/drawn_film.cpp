@@ -103,6 +103,7 @@ void DrawnFilm::add_ghosts(const SceneDef& scene, const std::vector<Body>& bodie
     ghost.wires = false;
     ghost.kept_clear = false;
     ghost.ghost = true;
+    ghost.finish = {};
     stage_.meshes.push_back(std::move(ghost));
   }
 }
@@ -141,7 +142,7 @@ void DrawnFilm::follow(const std::vector<TimedChange>& changes, const CollisionS
   }
 }
 
-// Adds what a replay has changed of the colours since the last list.
+// Adds what a replay has changed of the colours and finishes since the last list.
 void DrawnFilm::follow_colors(const SceneDef& scene, DrawList& list) {
   if (stage_.colors != colors_of(scene.look)) list.colors = stage_.colors = colors_of(scene.look);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
@@ -150,7 +151,7 @@ void DrawnFilm::follow_colors(const SceneDef& scene, DrawList& list) {
     const double gloss = gloss_of(scene.bodies[b]);
     const std::optional<ClothLook> cloth = cloth_look(scene.bodies[b], bodies_[b].description.mesh.rest);
     const bool takes_own = !scene.bodies[b].takes_colors_of_file();  // true once a change has set the body's color
-    if (mesh.color == color && mesh.gloss == gloss && mesh.cloth == cloth &&
+    if (mesh.color == color && mesh.gloss == gloss && mesh.finish == scene.bodies[b].finish && mesh.cloth == cloth &&
         !(takes_own && !mesh.surface_colors.empty()))
       continue;
     if (takes_own) mesh.surface_colors.clear();
@@ -160,6 +161,7 @@ void DrawnFilm::follow_colors(const SceneDef& scene, DrawList& list) {
     list.renewed.emplace_back(b, mesh);
   }
 }
+    mesh.finish = scene.bodies[b].finish;
 
 // Returns the positions of all meshes, in the order of the stage.
 std::vector<std::vector<float>> DrawnFilm::positions(const SceneDef& scene, const FramePose& pose,
