@@ -58,7 +58,10 @@ DrawnFilm::DrawnFilm(const Script& script, const std::vector<Body>& bodies, std:
   collider_skins_ = collider_skins(set.scene_colliders, bodies);
   // Cameras frame the bodies' boxes, which do not depend on the skins.
   const Stage fine = make_stage(scene, bodies, drawn_, set.scene_colliders, collider_skins_, font);
-  fit_to_cameras(drawn_, bodies, cameras_of(script, fine), scene.output.height);
+  cameras_ = cameras_of(script, fine);
+  fit_to_cameras(drawn_, bodies, cameras_, scene.output.height);
+  for (std::size_t c = 0; c < collider_skins_.size(); ++c)
+    round_for_cameras(collider_skins_[c], set.scene_colliders[c], cameras_, scene.output.height);
   stage_ = make_stage(scene, bodies, drawn_, set.scene_colliders, collider_skins_, font);
   stage_.graphs = graph_looks(scene, 0);
   stage_.camera_moves = moves_camera(script);
@@ -100,10 +103,10 @@ void DrawnFilm::add_ghosts(const SceneDef& scene, const std::vector<Body>& bodie
     ghost.surface_colors.clear();
     ghost.color = Vec3(0.604, 0.604, 0.604);  // the grey of references in all plots
     ghost.gloss = 0;
+    ghost.finish = {};
     ghost.wires = false;
     ghost.kept_clear = false;
     ghost.ghost = true;
-    ghost.finish = {};
     stage_.meshes.push_back(std::move(ghost));
   }
 }
@@ -138,6 +141,7 @@ void DrawnFilm::follow(const std::vector<TimedChange>& changes, const CollisionS
                        std::ranges::any_of(changes, [&name](const TimedChange& one) { return one.object == name; });
     if (!moved && !cost_for(name, changes).surface) continue;
     collider_skins_[c] = drawn_collider(set.scene_colliders[c], bounds_at_rest(bodies));
+    round_for_cameras(collider_skins_[c], set.scene_colliders[c], cameras_, start_.output.height);
     renewed_.push_back(c);
   }
 }
@@ -157,11 +161,11 @@ void DrawnFilm::follow_colors(const SceneDef& scene, DrawList& list) {
     if (takes_own) mesh.surface_colors.clear();
     mesh.color = color;
     mesh.gloss = gloss;
+    mesh.finish = scene.bodies[b].finish;
     mesh.cloth = cloth;
     list.renewed.emplace_back(b, mesh);
   }
 }
-    mesh.finish = scene.bodies[b].finish;
 
 // Returns the positions of all meshes, in the order of the stage.
 std::vector<std::vector<float>> DrawnFilm::positions(const SceneDef& scene, const FramePose& pose,
