@@ -199,8 +199,9 @@ Roundness roundness_for(double pixel) { return {6 * pixel, 0.5 * pixel}; }
 
 void round_body(DrawnBody& drawn, const Body& body, double pixel) {
   const ExactSurface exact{body.shape, body.placement};
-  if (round_off(drawn.skin, roundness_for(pixel), body.def.shape.empty() ? nullptr : &exact))
-    drawn.embedding = embed(drawn.skin.rest, body.description.mesh);
+  const auto ends = round_off(drawn.skin, roundness_for(pixel), body.def.shape.empty() ? nullptr : &exact);
+  if (!ends.empty())
+    drawn.embedding = with_middles(drawn.embedding, drawn.skin.rest.points, ends, body.description.mesh);
 }
 
 void fit_to_pixels(DrawnBody& drawn, const TetMesh& mesh, double pixel) {

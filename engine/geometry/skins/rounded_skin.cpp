@@ -51,13 +51,13 @@ class RoundingPass {
     to_scale_ = std::cbrt(to_shape_.linear().determinant());
   }
 
-  // Returns whether an edge was cut.
-  bool run() {
+  // Cuts, and appends the ends of the edges in whose middle new vertices lie.
+  void run(std::vector<std::array<std::int32_t, 2>>& ends) {
     find_edges();
     bool cuts = false;
     for (auto& [name, edge] : edges_) cuts |= edge.cut = is_cut(edge);
     if (cuts) cut();
-    return cuts;
+    for (const Added& added : added_) ends.push_back({added.a, added.b});
   }
 
  private:
@@ -99,7 +99,13 @@ class RoundingPass {
     // Where the middle is farther away than this, two parts of the surface face each other, and no curve joins the
     // ends.
     constexpr double furthest = 0.25;  // over the edge's length
-    edge.middle = exact_ != nullptr ? on_shape(straight, length) : on_curve(edge, a, b);
+    edge.middle = on_curve(edge, a, b);
+    if (exact_ != nullptr) {
+      // The skin's own normals tell where it is too flat to be worth a look at the shape, which takes longer.
+      const bool flat = (edge.middle - straight).norm() < 0.5 * roundness_.off;
+      if (flat && !is_near_paint(edge, length)) return false;
+      edge.middle = on_shape(straight, length);
+    }
     const double off = (edge.middle - straight).norm();
     const bool bent = off > roundness_.off;
     if (bent && (off > furthest * length || (exact_ != nullptr && !turns_evenly(a, edge.middle, b, length)))) {
@@ -136,13 +142,25 @@ class RoundingPass {
     return 0.5 * (a + b) - ((b - a).dot(at_a) * at_a + (a - b).dot(at_b) * at_b) / 8;
   }
 
+  double nearest_border(const Edge& edge, std::size_t layer) const {
+    return std::min(std::abs(skin_.paint[std::size_t(edge.from)][layer]),
+                    std::abs(skin_.paint[std::size_t(edge.to)][layer]));
+  }
+
+  // Tells whether the border of a layer may cross an edge.
+  bool is_near_paint(const Edge& edge, double length) const {
+    for (std::size_t layer = 0; layer < exact_->shape.paint.size(); ++layer)
+      if (nearest_border(edge, layer) < length * to_scale_) return true;
+    return false;
+  }
+
   // Tells whether the border of a layer runs near an edge's middle, and is elsewhere than where the distances at the
   // ends would put it.
   bool bends_paint(const Edge& edge, double length) const {
     if (exact_ == nullptr) return false;
     for (std::size_t layer = 0; layer < exact_->shape.paint.size(); ++layer) {
       const double from = skin_.paint[std::size_t(edge.from)][layer], to = skin_.paint[std::size_t(edge.to)][layer];
-      if (std::min(std::abs(from), std::abs(to)) > length * to_scale_) continue;
+      if (nearest_border(edge, layer) > length * to_scale_) continue;
       const double there = distance(exact_->shape.paint[layer].area, to_shape_ * edge.middle);
       if (std::abs(there) < 0.5 * length * to_scale_ &&
           std::abs(there - 0.5 * (from + to)) > roundness_.off * to_scale_)
@@ -216,15 +234,16 @@ class RoundingPass {
 
 }  // namespace
 
-bool round_off(Skin& skin, const Roundness& roundness, const ExactSurface* exact) {
+std::vector<std::array<std::int32_t, 2>> round_off(Skin& skin, const Roundness& roundness, const ExactSurface* exact) {
   constexpr int passes = 3;
   constexpr Eigen::Index most = 1'000'000;  // triangles
-  bool cut = false;
+  std::vector<std::array<std::int32_t, 2>> ends;
   for (int pass = 0; pass < passes && 4 * skin.rest.triangles.rows() <= most; ++pass) {
-    if (!RoundingPass(skin, roundness, exact).run()) break;
-    cut = true;
+    const std::size_t before = ends.size();
+    RoundingPass(skin, roundness, exact).run(ends);
+    if (ends.size() == before) break;
   }
-  return cut;
+  return ends;
 }
 
 }  // namespace supple
