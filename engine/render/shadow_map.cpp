@@ -87,8 +87,8 @@ void ShadowMap::bind(const Program& program, int unit) const {
   program.set("widest_penumbra", widest_ / texel);
   program.set("penumbra_slope", tan_of_light * edge_);  // the depths run over the length of an edge
   program.set("most_taps", taps);
-  // Where all wide taps meet something, a little light may still pass between them. In a large picture the border of that
-  // place would be seen as a row of blocks, so that all points take the narrow taps there.
+  // Where all wide taps meet something, a little light may still pass between them. In a large picture the border of
+  // that place would be seen as a row of blocks, so that all points take the narrow taps there.
   constexpr int large = 2048;
   program.set("surely_casters", edge_ < large ? 3.9 : 4.1);
 }
