@@ -7,6 +7,7 @@ uniform int map_texels;         // texels along each edge of the map
 uniform float widest_penumbra;  // radius of the widest border of a shadow, in texels
 uniform float penumbra_slope;   // radius of a border in texels over the difference in depth to what casts it
 uniform int most_taps;          // taps that the border of a shadow takes at most
+uniform float surely_casters;   // of the four wide taps, casters above which a point is in full shadow
 
 #ifndef GL_ARB_derivative_control
 #define dFdxFine dFdx
@@ -88,7 +89,7 @@ float light_reaching(vec3 position, vec3 normal, float in_map, bool in_step) {
   // the light where the border is narrow.
   bool reached = own >= min(above, 1.0);
   float radius = clamp(penumbra_slope * (depth - caster_depth / max(casters, 0.1)), 1.0, widest_penumbra);
-  bool border = casters > 0.1 && (casters < 3.9 || reached || radius < 0.7 * widest_penumbra) && !turned_away;
+  bool border = casters > 0.1 && (casters < surely_casters || reached || radius < 0.7 * widest_penumbra) && !turned_away;
   const mat2 golden = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);
   float lit = 0.0, taken = 0.0;
   vec2 lean = vec2(0.0);  // to where the light passes

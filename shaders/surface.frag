@@ -6,6 +6,9 @@
 #include "film.glsl"
 #include "lighting.glsl"
 #include "shadow.glsl"
+#ifdef ROUGH
+#include "roughness.glsl"
+#endif
 #ifdef COLORED
 #include "texture.glsl"
 #endif
@@ -15,7 +18,7 @@ uniform samplerBuffer normals;    // by vertex, and of cloth how hollow it is th
 uniform usamplerBuffer triangles; // three vertices; mesh (16 bits), covering layer (4 bits), bordering layers (8 bits)
 uniform samplerBuffer paint;      // by vertex and layer: distances, eight for each vertex
 uniform samplerBuffer squares;    // by vertex: place in the printed pattern
-uniform samplerBuffer materials;  // by mesh, twenty texels
+uniform samplerBuffer materials;  // by mesh, twenty-one texels
 #ifdef FIELD
 uniform samplerBuffer values;     // by vertex: the field, 0 at the low end of its range and 1 at the high one; negative: none
 uniform samplerBuffer colors;     // of the field, from low to high, in the colours of the screen
@@ -49,6 +52,9 @@ struct Seen {
   vec3 right, up;          // how the weights change to the next pixel
   vec3 world, normal;
   float open;
+#ifdef ROUGH
+  vec2 rough;              // share of its parts that have a roughness in the place of a gloss, and that share times it
+#endif
 #ifdef CLOTH
   float hollow;            // from -1 on the ridges of the side that is seen to 1 in its valleys
   bool back;               // whether the triangle's back is seen
@@ -60,7 +66,7 @@ Seen look(uint number, vec2 at) {
   Seen seen;
   uvec4 triangle = texelFetch(triangles, int(number & 0xffffffu) - 1);
   seen.corners = ivec3(triangle.xyz);
-  seen.material = 20 * int(triangle.w & 0xffffu);
+  seen.material = 21 * int(triangle.w & 0xffffu);
   seen.covering = int(triangle.w >> 16 & 15u);
   seen.bordering = triangle.w >> 20;
   vec4 a = texelFetch(places, seen.corners.x), b = texelFetch(places, seen.corners.y), c = texelFetch(places, seen.corners.z);
@@ -97,6 +103,9 @@ Seen look(uint number, vec2 at) {
 #ifdef CLOTH
 #include "cloth.glsl"
 #endif
+#ifdef TRANSLUCENT
+#include "translucent.glsl"
+#endif
 
 #ifdef COLORED
 // Returns the colour that the file of the surface gives it.
@@ -115,8 +124,20 @@ vec3 color_of_file(Seen seen) {
 // The way on a surface from one pixel to the next, over a pixel's width, where it is seen at a slant of some 83 degrees.
 const float most_slanted = 8.0;
 
-vec4 material_of(Seen seen) {
+#ifdef ROUGH
+// Takes the roughness from a part's colour and gloss: a gloss above 2 is a roughness above that.
+vec2 take_roughness(inout vec4 part) {
+  vec2 rough = part.a < 1.5 ? vec2(0.0) : vec2(1.0, part.a - 2.0);
+  part.a *= 1.0 - rough.x;
+  return rough;
+}
+#endif
+
+vec4 material_of(inout Seen seen) {
   vec4 material = texelFetch(materials, seen.material + seen.covering);
+#ifdef ROUGH
+  seen.rough = take_roughness(material);
+#endif
 #ifdef COLORED
   if (texelFetch(materials, seen.material + 17).w > 0.5) material.rgb = color_of_file(seen);
 #endif
@@ -133,7 +154,12 @@ vec4 material_of(Seen seen) {
     float beyond = min(change, 2.0 * seen.pixel);
     float nearest = min(d.x, min(d.y, d.z)) - beyond, furthest = max(d.x, max(d.y, d.z)) + beyond;
     float cover = 1.0 - smoothstep(-0.5 * width, 0.5 * width, clamp(dot(seen.weights, d), nearest, furthest));
-    material = mix(material, texelFetch(materials, seen.material + 1 + layer), left == 0u ? 0.0 : cover);
+    cover = left == 0u ? 0.0 : cover;
+    vec4 paint_of_layer = texelFetch(materials, seen.material + 1 + layer);
+#ifdef ROUGH
+    seen.rough = mix(seen.rough, take_roughness(paint_of_layer), cover);
+#endif
+    material = mix(material, paint_of_layer, cover);
     left &= left - 1u;
   } while (left != 0u);
 #endif
@@ -175,11 +201,13 @@ vec3 light_from(Seen seen, vec4 material, bool first) {
   float facing = dot(n, key_direction);
   float lit = light_reaching(seen.world, n, 1.0, first);
   float wrapped = max((facing + 0.25) / 1.25, 0.0), soft = 0.5;
+  bool is_sheet = false;
 #ifdef CLOTH
-  if (is_cloth(seen)) soft = 0.15;  // cloth is too thin for this, and its folds would be flat
+  is_sheet = is_cloth(seen);
+  if (is_sheet) soft = 0.15;  // cloth is too thin for this, and its folds would be flat
 #endif
   vec3 key = key_color * mix(vec3(max(facing, 0.0)), vec3(wrapped) * (0.55 + 0.45 * albedo), soft) * mix(lit, 1.0, 0.06);
-  vec3 fill = fill_color * max(dot(n, normalize(vec3(0.95, 0.25, 0.45))) * 0.7 + 0.3, 0.0);
+  vec3 fill = fill_color * max(dot(n, normalize(TO_FILL)) * 0.7 + 0.3, 0.0);
   float up = 0.5 + 0.5 * n.y;
   vec3 sky = mix(0.55 * ground_color, sky_color, up);
   float open = seen.open * seen.open;
@@ -187,7 +215,7 @@ vec3 light_from(Seen seen, vec4 material, bool first) {
 
   float away = 1.0 - max(dot(n, v), 0.0);
   float edge = away * away * away;
-  light += rim_color * edge * max(dot(n, normalize(vec3(0.35, 0.55, -0.8))) + 0.15, 0.0) * (0.25 + 0.75 * albedo) * seen.open;
+  light += rim_color * edge * max(dot(n, normalize(TO_RIM)) + 0.15, 0.0) * (0.25 + 0.75 * albedo) * seen.open;
 
   vec3 h = normalize(key_direction + v);
   float power = mix(12.0, 420.0, gloss * gloss);
@@ -196,8 +224,14 @@ vec3 light_from(Seen seen, vec4 material, bool first) {
   light += key_color * fresnel * lit * (power + 8.0) / 25.0 * pow(max(dot(n, h), 0.0), power) * gloss;
   // Wet surfaces also reflect the sky.
   light += sky_color * gloss * gloss * (0.04 + 0.5 * edge * away * away) * open * smoothstep(-0.2, 0.6, reflect(-v, n).y);
+#ifdef ROUGH
+  if (seen.rough.x > 0.0) light += seen.rough.x * reflections(n, v, seen.rough.y / seen.rough.x, lit, open);
+#endif
+#ifdef TRANSLUCENT
+  light += light_through(seen, albedo, is_sheet, first);
+#endif
 #ifdef CLOTH
-  if (is_cloth(seen)) light += sheen(n, v, albedo, lit, open);
+  if (is_sheet) light += sheen(n, v, albedo, lit, open);
 #endif
   return light;
 }
@@ -237,6 +271,9 @@ vec3 shown(Seen seen, bool first) {
 #ifdef FIELD
   bool mapped = shows_field(seen);
   material = mapped ? vec4(vec3(0.55), 0.0) : material;
+#ifdef ROUGH
+  if (mapped) seen.rough = vec2(0.0);
+#endif
 #endif
 #ifdef CLOTH
   if (is_cloth(seen)) dress(seen, material);

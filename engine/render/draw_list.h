@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/finish.h"
 #include "base/texture.h"
 #include "base/types.h"
 #include "render/font.h"
@@ -81,6 +82,7 @@ struct DrawMesh {
   bool two_sided = false;                  // for cloth, and for bodies that may be inside out
   Vec3 color;                              // sRGB colour of the uncovered surface
   double gloss = 0.25;                     // gloss of the uncovered surface
+  Finish finish;                           // its roughness counts in the place of that gloss
   std::vector<PaintColor> layers;          // at most 8
   Bounds rest;                             // bounds at the start: captions stand below them, cameras frame them [m]
   bool mapped = false;                     // whether it shows the field; its own colours are then not seen

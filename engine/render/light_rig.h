@@ -6,7 +6,9 @@
 namespace supple {
 
 struct LightRig {
-  Vec3 to_key;               // towards the key light; any length
+  Vec3 to_key;  // towards the key light; any length
+  // Towards the two lamps that stand at the same place in all sets; of any length.
+  static inline const Vec3 to_fill = Vec3(0.95, 0.25, 0.45), to_rim = Vec3(0.35, 0.55, -0.8);
   Vec3 key, fill, rim, sky;  // linear, as they arrive at a surface that faces them
   double key_share;          // of the light on the open ground, of which the sky gives the rest
   double sky_share;

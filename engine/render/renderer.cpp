@@ -115,7 +115,12 @@ void Renderer::make_surfaces() {
 
 // Makes a program that shades what the stage's meshes have and no more.
 void Renderer::make_shading_program() {
-  std::vector<std::string> definitions = {fmt::format("SAMPLES {}", samples_)};
+  make_rim_shadows();
+  const auto constant = [](const char* name, const Vec3& value) {
+    return fmt::format("{} vec3({}, {}, {})", name, value.x(), value.y(), value.z());
+  };
+  std::vector<std::string> definitions = {fmt::format("SAMPLES {}", samples_), constant("TO_FILL", LightRig::to_fill),
+                                          constant("TO_RIM", LightRig::to_rim)};
   if (std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.layers.empty(); }))
     definitions.emplace_back("PAINTED");
   if (std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.square.empty(); }))
@@ -127,9 +132,22 @@ void Renderer::make_shading_program() {
       std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.surface_colors.empty(); });
   if (colored) definitions.emplace_back("COLORED");
   if (std::ranges::any_of(stage_.meshes, &DrawMesh::wires)) definitions.emplace_back("WIRES");
+  if (std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return mesh.finish.roughness.has_value(); }))
+    definitions.emplace_back("ROUGH");
+  if (rim_shadows_) definitions.emplace_back("TRANSLUCENT");
   if (shading_program_ && definitions == definitions_) return;
   definitions_ = definitions;
   shading_program_ = std::make_unique<Program>(gl_, shaders_, "tiles", "surface", definitions);
+}
+
+// Light from behind needs to know how far its way through a body is. Once made the map stays, so that a film in which a
+// value comes and goes does not compile its shader again and again.
+void Renderer::make_rim_shadows() {
+  if (rim_shadows_ ||
+      std::ranges::none_of(stage_.meshes, [](const DrawMesh& mesh) { return mesh.finish.translucent > 0; }))
+    return;
+  rim_shadows_ =
+      std::make_unique<ShadowMap>(gl_, shaders_, cover_.largest_body(), LightRig::to_rim.normalized(), stage_.width);
 }
 
 // Makes the legend, and gives the colours of the field to the shader.
@@ -197,6 +215,7 @@ void Renderer::shade(const StageLight& light) {
   unit = textures_->bind(program, unit);
   program.set_texture("visible", unit++, GL_TEXTURE_2D, visible_);
   if (stage_.field) program.set_texture("colors", unit++, GL_TEXTURE_BUFFER, color_texture_);
+  if (rim_shadows_) rim_shadows_->bind_depths(program, "rim_map", "rim_matrix", unit++);
   program.set("wire_width", std::max(1.0, stage_.height / 720.0));
   gl_.Enable(GL_BLEND);
   gl_.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // the samples are already weighted by their coverage
@@ -232,7 +251,10 @@ Image Renderer::draw_moment(const DrawList& list, const StageCover::Frame& cover
   DrawZone zone(gl_, "upload");
   if (motion == Motion::moved) surfaces_->upload(stage_.meshes, list);
   zone.next("shadow map");
-  if (motion == Motion::moved) shadows_->draw(*surfaces_, stage_.meshes, cover.shadow_center, cover.shadow_radius);
+  for (ShadowMap* map : {shadows_.get(), rim_shadows_.get()}) {
+    if (map != nullptr && motion == Motion::moved)
+      map->draw(*surfaces_, stage_.meshes, cover.shadow_center, cover.shadow_radius);
+  }
   zone.next("visibility");
   find_visible(view, light, list);
   zone.next("ground");

@@ -53,6 +53,7 @@ class Renderer {
 
   void make_targets();
   void make_shading_program();
+  void make_rim_shadows();
   void prepare_field();
   void make_surfaces();
   void take_samples(int samples);
@@ -83,6 +84,7 @@ class Renderer {
   std::unique_ptr<Visibility> visibility_;
   std::unique_ptr<Visibility> sharp_;  // for passes of blurred pictures; made when they are first asked for
   std::unique_ptr<ShadowMap> shadows_;
+  std::unique_ptr<ShadowMap> rim_shadows_;  // of the rim light, once something is translucent
   std::unique_ptr<Ground> ground_;
   OverlayPlaces overlays_;
   std::unique_ptr<Captions> captions_;

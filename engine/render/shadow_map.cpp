@@ -83,10 +83,19 @@ void ShadowMap::bind(const Program& program, int unit) const {
   program.set("light_matrix", matrix_);
   program.set("shadow_offset", offset_);
   program.set("map_texels", edge_);
-
+  program.set("map_depth", 2 * radius_);
   program.set("widest_penumbra", widest_ / texel);
   program.set("penumbra_slope", tan_of_light * edge_);  // the depths run over the length of an edge
   program.set("most_taps", taps);
+  // Where all wide taps meet something, a little light may still pass between them. In a large picture the border of
+  // that place would be seen as a row of blocks, so that all points take the narrow taps there.
+  constexpr int large = 2048;
+  program.set("surely_casters", edge_ < large ? 3.9 : 4.1);
+}
+
+void ShadowMap::bind_depths(const Program& program, const char* sampler, const char* matrix, int unit) const {
+  program.set_texture(sampler, unit, GL_TEXTURE_2D, texture_);
+  program.set(matrix, matrix_);
 }
 
 }  // namespace supple

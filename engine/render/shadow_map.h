@@ -1,4 +1,4 @@
-// Draws the key light's shadow map: the distance from the light to the nearest surface. The map is orthographic; what
+// Draws the shadow map of a lamp: the distance from the light to the nearest surface. The map is orthographic; what
 // it covers is told for each frame (stage_cover.h).
 #pragma once
 
@@ -25,6 +25,10 @@ class ShadowMap {
 
   // Passes the map and its parameters to a program whose shader includes shadow.glsl; the map uses this unit.
   void bind(const Program& program, int unit) const;
+
+  // Passes the map alone, for another lamp than that of shadow.glsl: the map to this sampler, and the matrix that maps
+  // the world to the lamp's clip coordinates.
+  void bind_depths(const Program& program, const char* sampler, const char* matrix, int unit) const;
 
   double widest_penumbra() const { return widest_; }  // radius in the world [m]
 

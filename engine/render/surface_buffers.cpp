@@ -14,8 +14,31 @@ namespace {
 // uncovered surface and eight are its layers; the widths of the layers' borders, one in each of eight texels; the kind
 // of print, whether it shows the field, whether its edges are drawn, and whether it has the colours of its file; the
 // colour of a cloth's back with 0 for no cloth, 1 for this colour and 2 for a tone of the front's; the distance of its
-// yarns and the width of its hem.
-constexpr std::size_t material_texels = 20;
+// yarns and the width of its hem; what it lets through, and how far that light goes inside.
+constexpr std::size_t material_texels = 21;
+
+// In the place of a gloss, a roughness is written larger by this.
+constexpr double rough_above = 2;
+
+// Returns what is written for the gloss of a part of a surface. A painted part keeps a gloss that is above what the
+// roughness of the surface leaves, so that eyes shine in a face of chalk, and a wet face is wet all over.
+double shine(double gloss, const Finish& finish, bool painted) {
+  if (!finish.roughness || (painted && gloss > 1 - *finish.roughness)) return gloss;
+  return rough_above + *finish.roughness;
+}
+
+// Returns the way after which a third of the light is left that has entered a surface [m]. Light that meets cloth has
+// come through; what is this far from it still lets some pass.
+double way_of_light(const DrawMesh& mesh) {
+  constexpr double through_solid = 0.25, behind_cloth = 0.03;  // over the body's size
+  return (mesh.cloth ? behind_cloth : through_solid * mesh.finish.translucent) * mesh.rest.diagonal();
+}
+
+void append_translucency(const DrawMesh& mesh, float* out) {
+  if (mesh.mapped || mesh.finish.translucent == 0) return;
+  out[0] = static_cast<float>(mesh.finish.translucent);
+  out[1] = static_cast<float>(way_of_light(mesh));
+}
 
 void append_cloth(const DrawMesh& mesh, float* out) {
   // A surface that shows a field has neither sides nor yarns, as it has no print.
@@ -35,9 +58,9 @@ void append_material(const DrawMesh& mesh, std::vector<float>& out) {
     for (int k = 0; k < 3; ++k) out[begin + 4 * slot + k] = static_cast<float>(linear[k]);
     out[begin + 4 * slot + 3] = static_cast<float>(gloss);
   };
-  put(0, mesh.color, mesh.gloss);
+  put(0, mesh.color, shine(mesh.gloss, mesh.finish, false));
   for (std::size_t layer = 0; layer < std::min<std::size_t>(mesh.layers.size(), 8); ++layer) {
-    put(layer + 1, mesh.layers[layer].color, mesh.layers[layer].gloss);
+    put(layer + 1, mesh.layers[layer].color, shine(mesh.layers[layer].gloss, mesh.finish, true));
     out[begin + 4 * (layer + 9)] = static_cast<float>(mesh.layers[layer].soft);
   }
   // A surface that shows a field has no print: its lines would be taken for values of the field, or for shadows.
@@ -47,6 +70,7 @@ void append_material(const DrawMesh& mesh, std::vector<float>& out) {
   out[begin + 4 * 17 + 2] = mesh.wires ? 1.0f : 0.0f;
   out[begin + 4 * 17 + 3] = mesh.surface_colors.empty() ? 0.0f : 1.0f;
   append_cloth(mesh, &out[begin + 4 * 18]);
+  append_translucency(mesh, &out[begin + 4 * 20]);
 }
 
 // Packs what the shader must know of a triangle's colours: its mesh (16 bits), the topmost layer that covers all of it

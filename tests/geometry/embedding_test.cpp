@@ -140,6 +140,35 @@ TEST(Embedding, JoinsPartsAlongTheSkinAndNotAcrossAGap) {
   EXPECT_LT((embedded_points(embedding, now) - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+// The new points lie in the middle of edges, moved out onto the sphere, and between two of themselves.
+TEST(Embedding, CarriesPointsThatComeInTheMiddleOfTwo) {
+  const CoarseBall ball;
+  const Embedding before = embed(ball.skin, ball.mesh);
+  Positions points = ball.skin.points;
+  std::vector<std::array<std::int32_t, 2>> ends;
+  const auto append = [&](std::int32_t a, std::int32_t b) {
+    ends.push_back({a, b});
+    points.conservativeResize(points.rows() + 1, 3);
+    points.row(points.rows() - 1) = (points.row(a) + points.row(b)).normalized();
+  };
+  for (Eigen::Index t = 0; t < ball.skin.triangles.rows(); t += 7)
+    append(ball.skin.triangles(t, 0), ball.skin.triangles(t, 1));
+  append(static_cast<std::int32_t>(points.rows() - 1), ball.skin.triangles(0, 0));
+  const Embedding after = with_middles(before, points, ends, ball.mesh);
+  ASSERT_EQ(after.points(), points.rows());
+  const Mat3 turn = Eigen::AngleAxisd(2, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
+  EXPECT_LT((embedded_points(after, ball.mesh.rest * turn.transpose()) - points * turn.transpose()).norm(), 1e-11);
+  // In a bent ball, the old points are where they were, and new ones between their ends.
+  Positions bent = ball.mesh.rest;
+  for (Eigen::Index v = 0; v < bent.rows(); ++v) bent(v, 0) += 0.3 * bent(v, 1) * bent(v, 1);
+  const Positions old = embedded_points(before, bent), now = embedded_points(after, bent);
+  EXPECT_LT((now.topRows(old.rows()) - old).norm(), 1e-11);
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    const Vec3 a = now.row(ends[i][0]), b = now.row(ends[i][1]), middle = now.row(old.rows() + Eigen::Index(i));
+    EXPECT_LT((middle - 0.5 * (a + b)).norm(), 0.5 * (a - b).norm() + 1e-3);
+  }
+}
+
 TEST(Embedding, KeepsTheNamedPointsAlone) {
   const CoarseBall ball;
   const Embedding whole = embed(ball.skin, ball.mesh);

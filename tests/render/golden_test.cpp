@@ -366,6 +366,15 @@ TEST(Golden, TheGroundCanBeLeftOut) {
                 {{{"look.backdrop=ground"}}, {{"body.ball.gloss=0"}, {}, true}});
 }
 
+TEST(Golden, LightComesThroughThinThingsAndShinesOnWetOnes) {
+  expect_golden("finish", {written_for_tests("finish")},
+                {{{"body.rabbit.translucent=0"}, {}, true},
+                 {{"body.cube.translucent=0"}, {}, true},
+                 {{"body.sheet.translucent=0"}},
+                 {{"body.rabbit.roughness=1"}, {}, true},
+                 {{"collider.ball.roughness=1"}, {}, true}});
+}
+
 TEST(Golden, WordsTellOfTheFilmAndItsBodies) {
   if (!std::filesystem::exists(lato)) GTEST_SKIP() << lato << " is not installed";
   expect_golden("words",

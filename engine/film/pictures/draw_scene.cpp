@@ -6,6 +6,7 @@
 #include "base/floats.h"
 #include "film/pictures/drawn_cloth.h"
 #include "film/pictures/picture_words.h"
+#include "geometry/skins/rounded_skin.h"
 #include "geometry/skins/simplify.h"
 #include "geometry/skins/skin_stretch.h"
 #include "render/view.h"
@@ -118,6 +119,7 @@ DrawMesh collider_mesh(const SceneCollider& collider, const Skin& skin) {
   mesh.name = collider.def.name;
   mesh.color = collider_color(collider.def);
   mesh.gloss = collider_gloss;
+  mesh.finish = collider.def.finish;
   mesh.rest = bounds_of(at_pose(skin.rest.points, collider.pose(0)));
   mesh.framed = skin.rest.points.rows() > 0 && collider.def.shape.bounds().diagonal() < 1e6;
   return mesh;
@@ -167,6 +169,7 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
     mesh.textures = drawn[b].textures;
     mesh.cloth = cloth_look(bodies[b].def, bodies[b].description.mesh.rest);
     mesh.gloss = gloss_of(bodies[b].def);
+    mesh.finish = bodies[b].def.finish;
     mesh.wires = scene.look.wireframe;
     mesh.rest = bounds_of(bodies[b].description.mesh.rest);
     stage.meshes.push_back(std::move(mesh));
@@ -182,6 +185,23 @@ namespace {
 double pixel_on(const Bounds& body, const Camera& camera, int height) {
   const double nearest = std::max((camera.eye - body.center()).norm() - 0.5 * body.diagonal(), 0.1 * body.diagonal());
   return 2 * std::tan(camera.fov_deg * std::numbers::pi / 360) * nearest / height;
+}
+
+// Returns the edge of the smallest pixel that one of the cameras has there [m].
+double pixel_on(const Bounds& body, const std::vector<Camera>& cameras, int height) {
+  double pixel = 1e300;
+  for (const Camera& camera : cameras) pixel = std::min(pixel, pixel_on(body, camera, height));
+  return pixel;
+}
+
+// Edges of up to six pixels, and those that are off by less than half a pixel, look round in enlarged pictures.
+Roundness roundness_for(double pixel) { return {6 * pixel, 0.5 * pixel}; }
+
+void round_body(DrawnBody& drawn, const Body& body, double pixel) {
+  const ExactSurface exact{body.shape, body.placement};
+  const auto ends = round_off(drawn.skin, roundness_for(pixel), body.def.shape.empty() ? nullptr : &exact);
+  if (!ends.empty())
+    drawn.embedding = with_middles(drawn.embedding, drawn.skin.rest.points, ends, body.description.mesh);
 }
 
 void fit_to_pixels(DrawnBody& drawn, const TetMesh& mesh, double pixel) {
@@ -201,11 +221,24 @@ void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodi
   for (std::size_t b = 0; b < drawn.size(); ++b) {
     if (!drawn[b].vertex_of.empty() && !drawn[b].subdivides) continue;
     const TetMesh& mesh = bodies[b].description.mesh;
-    double pixel = 1e300;
-    for (const Camera& camera : cameras) pixel = std::min(pixel, pixel_on(bounds_of(mesh.rest), camera, height));
-    drawn[b].subdivides ? smooth_for_pixels(drawn[b], mesh.rest, pixel) : fit_to_pixels(drawn[b], mesh, pixel);
+    const double pixel = pixel_on(bounds_of(mesh.rest), cameras, height);
+    if (drawn[b].subdivides) {
+      smooth_for_pixels(drawn[b], mesh.rest, pixel);
+      continue;
+    }
+    round_body(drawn[b], bodies[b], pixel);
+    fit_to_pixels(drawn[b], mesh, pixel);
   }
   limit_stretch(drawn);
+}
+
+void round_for_cameras(Skin& skin, const SceneCollider& collider, const std::vector<Camera>& cameras, int height) {
+  const ShapeGroup& root = collider.def.shape.root;
+  const bool of_file = root.parts.size() == 1 && std::holds_alternative<ClosedSurface>(root.parts.front().primitive);
+  if (skin.rest.points.rows() == 0 || of_file) return;
+  const ExactSurface exact{collider.def.shape, no_placement()};
+  const double pixel = pixel_on(bounds_of(at_pose(skin.rest.points, collider.pose(0))), cameras, height);
+  round_off(skin, roundness_for(pixel), &exact);
 }
 
 void limit_stretch(std::vector<DrawnBody>& drawn) {

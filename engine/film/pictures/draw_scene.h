@@ -28,10 +28,15 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
 void add_colliders(const std::vector<SceneCollider>& colliders, const std::vector<Skin>& skins, double time,
                    DrawList& list);
 
-// Removes the triangles of skins that no camera could show in a picture of this height [pixels], and calls
-// limit_stretch(). Surfaces of cloth become smooth (drawn_cloth.h); other surfaces of meshes are left as they are.
+// Rounds skins off where a camera would show their triangles in a picture of this height [pixels], removes the
+// triangles that none could show, and calls limit_stretch(). Surfaces of cloth become smooth (drawn_cloth.h); other
+// surfaces of meshes are left as they are.
 void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodies, const std::vector<Camera>& cameras,
                     int height);
+
+// Rounds the skin of a collider off in the same way, where it follows a shape. Surfaces of files keep their triangles,
+// which bodies touch.
+void round_for_cameras(Skin& skin, const SceneCollider& collider, const std::vector<Camera>& cameras, int height);
 
 // Returns how many times more the most stretched edge of a drawn skin is stretched than the elements that carry it;
 // nothing where no edge is stretched by half or the skin is the mesh's own boundary. skin: skin_positions of `now`, the

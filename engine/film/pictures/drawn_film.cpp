@@ -58,7 +58,10 @@ DrawnFilm::DrawnFilm(const Script& script, const std::vector<Body>& bodies, std:
   collider_skins_ = collider_skins(set.scene_colliders, bodies);
   // Cameras frame the bodies' boxes, which do not depend on the skins.
   const Stage fine = make_stage(scene, bodies, drawn_, set.scene_colliders, collider_skins_, font);
-  fit_to_cameras(drawn_, bodies, cameras_of(script, fine), scene.output.height);
+  cameras_ = cameras_of(script, fine);
+  fit_to_cameras(drawn_, bodies, cameras_, scene.output.height);
+  for (std::size_t c = 0; c < collider_skins_.size(); ++c)
+    round_for_cameras(collider_skins_[c], set.scene_colliders[c], cameras_, scene.output.height);
   stage_ = make_stage(scene, bodies, drawn_, set.scene_colliders, collider_skins_, font);
   stage_.graphs = graph_looks(scene, 0);
   stage_.camera_moves = moves_camera(script);
@@ -100,6 +103,7 @@ void DrawnFilm::add_ghosts(const SceneDef& scene, const std::vector<Body>& bodie
     ghost.surface_colors.clear();
     ghost.color = Vec3(0.604, 0.604, 0.604);  // the grey of references in all plots
     ghost.gloss = 0;
+    ghost.finish = {};
     ghost.wires = false;
     ghost.kept_clear = false;
     ghost.ghost = true;
@@ -137,11 +141,12 @@ void DrawnFilm::follow(const std::vector<TimedChange>& changes, const CollisionS
                        std::ranges::any_of(changes, [&name](const TimedChange& one) { return one.object == name; });
     if (!moved && !cost_for(name, changes).surface) continue;
     collider_skins_[c] = drawn_collider(set.scene_colliders[c], bounds_at_rest(bodies));
+    round_for_cameras(collider_skins_[c], set.scene_colliders[c], cameras_, start_.output.height);
     renewed_.push_back(c);
   }
 }
 
-// Adds what a replay has changed of the colours since the last list.
+// Adds what a replay has changed of the colours and finishes since the last list.
 void DrawnFilm::follow_colors(const SceneDef& scene, DrawList& list) {
   if (stage_.colors != colors_of(scene.look)) list.colors = stage_.colors = colors_of(scene.look);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
@@ -150,12 +155,13 @@ void DrawnFilm::follow_colors(const SceneDef& scene, DrawList& list) {
     const double gloss = gloss_of(scene.bodies[b]);
     const std::optional<ClothLook> cloth = cloth_look(scene.bodies[b], bodies_[b].description.mesh.rest);
     const bool takes_own = !scene.bodies[b].takes_colors_of_file();  // true once a change has set the body's color
-    if (mesh.color == color && mesh.gloss == gloss && mesh.cloth == cloth &&
+    if (mesh.color == color && mesh.gloss == gloss && mesh.finish == scene.bodies[b].finish && mesh.cloth == cloth &&
         !(takes_own && !mesh.surface_colors.empty()))
       continue;
     if (takes_own) mesh.surface_colors.clear();
     mesh.color = color;
     mesh.gloss = gloss;
+    mesh.finish = scene.bodies[b].finish;
     mesh.cloth = cloth;
     list.renewed.emplace_back(b, mesh);
   }

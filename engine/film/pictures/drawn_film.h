@@ -73,7 +73,8 @@ class DrawnFilm {
   void follow_colors(const SceneDef& scene, DrawList& list);
 
   const std::vector<Body>& bodies_;
-  SceneDef start_;  // of the film
+  SceneDef start_;               // of the film
+  std::vector<Camera> cameras_;  // over the film, to which skins are fitted
   std::vector<DrawnBody> drawn_;
   std::vector<Skin> collider_skins_;
   std::optional<DrawnSupports> supports_;  // where the scene shows them

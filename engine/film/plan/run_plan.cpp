@@ -32,12 +32,16 @@ constexpr std::array seen = {"title",
                              "body[].back_color",
                              "body[].yarn",
                              "body[].gloss",
+                             "body[].roughness",
+                             "body[].translucent",
                              "body[].label",
                              "body[].meant",
                              "body[].pattern",
                              "body[].pattern_size",
                              "body[].skin_cells",
                              "collider[].color",
+                             "collider[].roughness",
+                             "collider[].translucent",
                              "collider[].visible"};
 
 bool is_seen(const std::string& path) {

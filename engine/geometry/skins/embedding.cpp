@@ -130,17 +130,15 @@ std::vector<std::int32_t> carrying_vertices(const std::vector<std::vector<Carrie
   return carrying;
 }
 
-}  // namespace
-
-Embedding embed(const TriMesh& skin, const TetMesh& mesh) {
-  Located place = located(skin.points, mesh);
-  const std::vector<std::vector<Carrier>> carriers = outside_carriers(skin, mesh, place);
+// Makes the embedding of points [m] from the elements in which they lie and, for those outside, from their carriers.
+Embedding embedding_of(const Positions& points, const TetMesh& mesh, Located place,
+                       const std::vector<std::vector<Carrier>>& carriers) {
   Embedding result;
   std::vector<std::int32_t> frame_of;
   result.frames = vertex_frames(mesh, carrying_vertices(carriers, mesh.rest.rows(), frame_of));
   result.corners = std::move(place.corners);
   result.weights = std::move(place.weights);
-  result.offset = Positions::Zero(skin.points.rows(), 3);
+  result.offset = Positions::Zero(points.rows(), 3);
   result.begin = {0};
   for (std::size_t v = 0; v < carriers.size(); ++v) {
     Vec3 mean = Vec3::Zero();
@@ -149,10 +147,66 @@ Embedding embed(const TriMesh& skin, const TetMesh& mesh) {
       mean += carrier.share * mesh.rest.row(carrier.vertex).transpose();
     }
     const auto row = static_cast<Eigen::Index>(v);
-    if (!carriers[v].empty()) result.offset.row(row) = skin.points.row(row) - mean.transpose();
+    if (!carriers[v].empty()) result.offset.row(row) = points.row(row) - mean.transpose();
     result.begin.push_back(static_cast<std::int32_t>(result.shares.size()));
   }
   return result;
+}
+
+// Returns what carries a point: the mesh vertices of its frames, or the corners of its element. Their shares sum to 1.
+std::vector<Carrier> carriers_of(const Embedding& embedding, Eigen::Index point) {
+  std::vector<Carrier> result;
+  for (std::int32_t i = embedding.begin[std::size_t(point)]; i < embedding.begin[std::size_t(point) + 1]; ++i) {
+    const FrameShare& part = embedding.shares[std::size_t(i)];
+    result.push_back({embedding.frames.vertex[std::size_t(part.frame)], part.share});
+  }
+  if (!result.empty()) return result;
+  const double sum = embedding.weights.row(point).cwiseMax(0).sum();  // rounding may have made one of them negative
+  for (int k = 0; k < 4; ++k)
+    result.push_back({embedding.corners(point, k), std::max(embedding.weights(point, k), 0.0) / sum});
+  return result;
+}
+
+// Returns the mean of two lists of carriers.
+std::vector<Carrier> mean_of(std::vector<Carrier> all, const std::vector<Carrier>& others) {
+  all.insert(all.end(), others.begin(), others.end());
+  std::ranges::stable_sort(all, {}, &Carrier::vertex);
+  std::vector<Carrier> mean;
+  for (const Carrier& one : all) {
+    if (mean.empty() || mean.back().vertex != one.vertex) mean.push_back({one.vertex, 0});
+    mean.back().share += 0.5 * one.share;
+  }
+  return mean;
+}
+
+}  // namespace
+
+Embedding embed(const TriMesh& skin, const TetMesh& mesh) {
+  Located place = located(skin.points, mesh);
+  const std::vector<std::vector<Carrier>> carriers = outside_carriers(skin, mesh, place);
+  return embedding_of(skin.points, mesh, std::move(place), carriers);
+}
+
+Embedding with_middles(const Embedding& embedding, const Positions& points,
+                       const std::vector<std::array<std::int32_t, 2>>& ends, const TetMesh& mesh) {
+  const Eigen::Index before = embedding.points();
+  Located place = located(points, mesh);
+  place.corners.topRows(before) = embedding.corners;
+  place.weights.topRows(before) = embedding.weights;
+  std::vector<std::vector<Carrier>> all;  // by point; those of points inside as well
+  std::vector<char> outside;
+  for (Eigen::Index v = 0; v < before; ++v) {
+    all.push_back(carriers_of(embedding, v));
+    outside.push_back(embedding.outside(v) ? 1 : 0);
+  }
+  for (const auto& [a, b] : ends) {
+    all.push_back(mean_of(all[std::size_t(a)], all[std::size_t(b)]));
+    const bool both = outside[std::size_t(a)] != 0 && outside[std::size_t(b)] != 0;
+    outside.push_back(both || place.inside[outside.size()] == 0 ? 1 : 0);
+  }
+  for (std::size_t v = 0; v < all.size(); ++v)
+    if (outside[v] == 0) all[v].clear();
+  return embedding_of(points, mesh, std::move(place), all);
 }
 
 Vec3 embedded_point(const Embedding& embedding, Eigen::Index point, const Positions& mesh_positions,

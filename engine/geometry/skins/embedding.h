@@ -3,6 +3,8 @@
 // them (vertex_frames.h): exactly under an affine motion of moderate stretch, and boundedly whatever elements do.
 #pragma once
 
+#include <array>
+
 #include "geometry/meshes/mesh.h"
 #include "geometry/meshes/vertex_frames.h"
 
@@ -30,6 +32,12 @@ struct Embedding {
 // Embeds the vertices of a skin in a mesh at rest. Parts of the skin that are near but not joined by its edges do not
 // follow each other's elements.
 Embedding embed(const TriMesh& skin, const TetMesh& mesh);
+
+// Embeds a skin that has got more vertices in the middle between two of them: `ends` by new vertex, in the order of the
+// new ones, which may lie between earlier ones. What carries both carries the new one, unless it lies in an element. It
+// need not lie on the line between them. points: all vertices of the skin at rest, n x 3, in the frame of `mesh` [m].
+Embedding with_middles(const Embedding& embedding, const Positions& points,
+                       const std::vector<std::array<std::int32_t, 2>>& ends, const TetMesh& mesh);
 
 // Returns the place of an embedded point at the mesh's current positions. frames: frames_at the same positions.
 Vec3 embedded_point(const Embedding& embedding, Eigen::Index point, const Positions& mesh_positions,

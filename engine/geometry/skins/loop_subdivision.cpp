@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "geometry/skins/flat_slide.h"
+#include "geometry/skins/skin_middles.h"
 
 namespace supple {
 namespace {
@@ -184,37 +185,10 @@ SparseRows one_level(const Skin& skin, const EdgedSurface& surface, const std::v
   return matrix_of(entries, row, surface.nodes);
 }
 
-template <class Value, std::size_t size>
-void append_mean(std::vector<std::array<Value, size>>& list, std::size_t a, std::size_t b) {
-  if (list.empty()) return;
-  std::array<Value, size> mean;
-  for (std::size_t k = 0; k < size; ++k) mean[k] = (list[a][k] + list[b][k]) / 2;
-  list.push_back(mean);
-}
-
-// Appends a skin vertex in the middle between two others, whose place is not computed here.
-void append_middle(Skin& skin, std::size_t a, std::size_t b,
-                   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t>& smooth, std::int32_t& next_smooth) {
-  skin.occlusion.push_back((skin.occlusion[a] + skin.occlusion[b]) / 2);
-  append_mean(skin.paint, a, b);
-  append_mean(skin.square, a, b);
-  append_mean(skin.flat, a, b);
-  if (!skin.color.empty()) {
-    const SurfaceColor &one = skin.color[a], &other = skin.color[b];
-    skin.color.push_back({(one.red + other.red) / 2, (one.green + other.green) / 2, (one.blue + other.blue) / 2,
-                          one.texture, (one.u + other.u) / 2, (one.v + other.v) / 2});
-  }
-  if (skin.smooth.empty()) return;
-  const auto [known, added] = smooth.try_emplace(std::minmax({skin.smooth[a], skin.smooth[b]}), next_smooth);
-  if (added) ++next_smooth;
-  skin.smooth.push_back(known->second);
-}
-
 // Cuts the triangles into four and appends the vertices between, each once for each side along which the skin is split.
 void cut_triangles(Skin& skin, EdgedSurface& surface) {
   std::vector<std::array<std::int32_t, 3>> middles(std::size_t(skin.rest.triangles.rows()));
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> smooth;
-  std::int32_t next_smooth = skin.smooth.empty() ? 0 : 1 + *std::ranges::max_element(skin.smooth);
+  SkinMiddles added(skin);
   for (std::size_t e = 0; e < surface.edges.size(); ++e) {
     std::vector<std::array<std::int32_t, 3>> made;  // two skin vertices, and the one between
     for (std::int32_t s = surface.edges[e].begin; s < surface.edges[e].end; ++s) {
@@ -225,7 +199,7 @@ void cut_triangles(Skin& skin, EdgedSurface& surface) {
       if (known == made.end()) {
         made.push_back({a, b, static_cast<std::int32_t>(surface.node_of.size())});
         surface.node_of.push_back(static_cast<std::int32_t>(surface.nodes + Eigen::Index(e)));
-        append_middle(skin, std::size_t(a), std::size_t(b), smooth, next_smooth);
+        added.append(std::size_t(a), std::size_t(b));
         known = made.end() - 1;
       }
       middles[std::size_t(side.triangle)][std::size_t(side.place)] = (*known)[2];

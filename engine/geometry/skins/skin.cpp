@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/skins/shape_surface.h"
 #include "geometry/triangles/surface_nets.h"
 
 namespace supple {
@@ -37,19 +38,6 @@ std::vector<float> sampled_field(const Shape& shape, const PointGrid& grid) {
   return field;
 }
 
-Vec3 onto_surface(const Shape& shape, Vec3 point, double cell) {
-  const Vec3 start = point;
-  for (int step = 0; step < 4; ++step) {
-    const double d = shape.distance(point);
-    if (std::abs(d) < 1e-4 * cell) break;
-    const Vec3 slope = shape.gradient(point, 0.02 * cell);
-    const double steepness2 = slope.squaredNorm();
-    if (steepness2 < 1e-4) break;
-    point -= d * slope / steepness2;
-  }
-  return (point - start).norm() < cell ? point : start;
-}
-
 // Estimates how open the sky over a point is, by how far the field falls short of free space along the normal (Evans
 // 2006, "Fast approximations for global illumination on dynamic scenes", with the shape's own field).
 float openness(const Shape& shape, const Vec3& point, const Vec3& normal, double size) {
@@ -63,6 +51,19 @@ float openness(const Shape& shape, const Vec3& point, const Vec3& normal, double
 }
 
 }  // namespace
+
+Vec3 onto_surface(const Shape& shape, const Vec3& start, double reach) {
+  Vec3 point = start;
+  for (int step = 0; step < 4; ++step) {
+    const double d = shape.distance(point);
+    if (std::abs(d) < 1e-4 * reach) break;
+    const Vec3 slope = shape.gradient(point, 0.02 * reach);
+    const double steepness2 = slope.squaredNorm();
+    if (steepness2 < 1e-4) break;
+    point -= d * slope / steepness2;
+  }
+  return (point - start).norm() < reach ? point : start;
+}
 
 TriMesh contour(const Shape& shape, double cell) {
   const PointGrid grid = grid_around(shape, cell);

@@ -4,10 +4,10 @@
 #include <array>
 #include <unordered_map>
 
+#include "geometry/triangles/split_triangle.h"
+
 namespace supple {
 namespace {
-
-using TriangleCorners = std::array<std::int32_t, 3>;
 
 // Halves each edge that is too long once.
 class Pass {
@@ -17,34 +17,10 @@ class Pass {
 
   // Appends the parts of a triangle: it alone where no edge is too long.
   void split(const TriangleCorners& corners, std::vector<TriangleCorners>& parts) {
-    std::int32_t middle[3];  // of the edge from corner k to the next; -1: stays whole
-    int halved = 0;
-    for (int k = 0; k < 3; ++k) {
-      middle[k] = middle_of(corners[std::size_t(k)], corners[std::size_t((k + 1) % 3)]);
-      halved += middle[k] >= 0 ? 1 : 0;
-    }
-    if (halved == 0) {
-      parts.push_back(corners);
-      return;
-    }
-    if (halved == 3) {
-      for (int k = 0; k < 3; ++k) parts.push_back({corners[std::size_t(k)], middle[k], middle[(k + 2) % 3]});
-      parts.push_back({middle[0], middle[1], middle[2]});
-      return;
-    }
-    // TriangleCorners are named so that the edge from a to b is halved, and of two halved edges the second is that from
-    // b to c.
-    int first = middle[0] >= 0 ? 0 : (middle[1] >= 0 ? 1 : 2);
-    if (halved == 2 && middle[(first + 1) % 3] < 0) first = (first + 2) % 3;
-    const std::int32_t a = corners[std::size_t(first)], b = corners[std::size_t((first + 1) % 3)],
-                       c = corners[std::size_t((first + 2) % 3)], ab = middle[first], bc = middle[(first + 1) % 3];
-    if (halved == 1) {
-      parts.insert(parts.end(), {{a, ab, c}, {ab, b, c}});
-    } else if (length2(a, bc) <= length2(ab, c)) {
-      parts.insert(parts.end(), {{ab, b, bc}, {a, ab, bc}, {a, bc, c}});
-    } else {
-      parts.insert(parts.end(), {{ab, b, bc}, {a, ab, c}, {ab, bc, c}});
-    }
+    std::array<std::int32_t, 3> middle;
+    for (std::size_t k = 0; k < 3; ++k) middle[k] = middle_of(corners[k], corners[(k + 1) % 3]);
+    split_triangle(
+        corners, middle, [this](std::int32_t a, std::int32_t b) { return length2(a, b); }, parts);
   }
 
  private:

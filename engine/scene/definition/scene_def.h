@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/finish.h"
 #include "base/frame_rate.h"
 #include "base/names.h"
 #include "base/picture_pass.h"
@@ -229,7 +230,8 @@ struct BodyDef {
   std::optional<double> yarn;          // between two yarns of cloth; 0: none are drawn [m]
   ColorSource colors = ColorSource::usual;
   std::optional<double> gloss;  // of the uncovered surface
-  double skin_cells = 0;        // cells of the drawn skin along the longest side
+  Finish finish;
+  double skin_cells = 0;  // cells of the drawn skin along the longest side
   FilePlace place;
 
   bool flows() const { return plastic || creep; }
@@ -253,6 +255,7 @@ struct ColliderDef {
   std::optional<SurfaceMotionDef> motion;  // nothing: it is rigid
   bool visible = true;
   std::optional<Vec3> color;  // [sRGB]
+  Finish finish;
   FilePlace place;
 };
 

@@ -388,6 +388,7 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
     table.complain("colors", "colors: of a 'surface'; there is none here");
   body.gloss = table.number_if_given({"gloss", "", "of the uncovered surface: 0 matt to 1 wet [0.25; cloth 0.08]"},
                                      Range::between(0, 1));
+  body.finish = read_finish(table);
   body.skin_cells = table.number({"skin_cells", "", "cells of the drawn skin along the longest side of a shape"}, 72,
                                  Range::between(8, 400));
   return body;

@@ -112,6 +112,7 @@ ColliderDef read_collider(const ConfigTable& table) {
   collider.keys = read_keys(table, "rotation about the shape's origin: x, then y, then z");
   collider.visible = table.boolean({"visible", "", "drawn in the film"}, true);
   collider.color = table.color_if_given({"color", "sRGB", "over the shape's own; cool grey without either"});
+  collider.finish = read_finish(table);
   return collider;
 }
 

@@ -54,6 +54,9 @@ LookDef read_look(const ConfigTable& root, LookDef look);
 FieldDef read_field(const ConfigTable& root);
 TextDef read_text(const ConfigTable& root);
 
+// Reads how the surface of a body or a collider treats light.
+Finish read_finish(const ConfigTable& table);
+
 Ease read_ease(const ConfigTable& table);
 
 // Reads the list `keys`, in the order of time. `turn`: the meaning of the key turn_deg, for the documentation.

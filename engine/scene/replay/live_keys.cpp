@@ -76,7 +76,11 @@ constexpr auto patterns = std::to_array<LivePattern>({
     {"body[].color", nothing},
     {"body[].back_color", nothing},
     {"body[].gloss", nothing},
+    {"body[].roughness", nothing},
+    {"body[].translucent", nothing},
     {"collider[].color", new_surface},
+    {"collider[].roughness", new_surface},
+    {"collider[].translucent", new_surface},
 });
 
 // Tells whether a path is the pattern itself or lies below it.
