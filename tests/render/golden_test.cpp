@@ -286,7 +286,7 @@ TEST(Golden, AFieldIsShownInColoursWithItsLegend) {
 TEST(Golden, TheDistanceToAnotherRunIsShownInColours) {
   const test::TemporaryFolder run;
   std::filesystem::create_directories(run.path / "motion");
-  std::ofstream(run.path / "run.json") << "{}";
+  std::ofstream(run.path / "run.json") << R"({"scene": {}})";
   const test::Film film(written_for_tests("field"), {});
   for (const Body& body : film.bodies) {
     const Positions& rest = body.description.mesh.rest;
@@ -344,7 +344,7 @@ TEST(Golden, SupportsMoveWithTheirHandlesAndGoWithThem) {
 TEST(Golden, AGhostOfAnotherRunIsSeenThroughTheBodies) {
   const test::TemporaryFolder run;
   std::filesystem::create_directories(run.path / "motion");
-  std::ofstream(run.path / "run.json") << "{}";
+  std::ofstream(run.path / "run.json") << R"({"scene": {}})";
   const test::Film film(written_for_tests("field"), {});
   for (const Body& body : film.bodies) {
     const Positions& rest = body.description.mesh.rest;
