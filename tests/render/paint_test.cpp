@@ -30,12 +30,14 @@ int specks(const PngImage& image) {
 // Where a fine skin was made coarser, it has triangles that are next to nothing high, whose weights are wild.
 TEST(Paint, HasNoBordersOnThinTrianglesBesideThem) {
   const test::TemporaryFolder folder;
+  // The rail is hidden, because the border of its shadow has specks of its own.
   const test::Result made =
       test::run(folder.path, {"render", "dented-cans", "--frames", "1", "--no-video", "--out", "cans", "--set",
-                              "body.tin.skin_cells=150", "--set", "body.rubber.skin_cells=150"});
+                              "body.tin.skin_cells=150", "--set", "body.rubber.skin_cells=150", "--set",
+                              "collider.rail.visible=false"});
   ASSERT_EQ(made.status, 0) << made.err;
-  // Of 592 that wild weights made, 15 are left, where such a triangle's normal makes it lighter or darker.
-  EXPECT_LT(specks(read_png(folder.path / "cans" / "frames" / "000000.png")), 25);
+  // Wild weights made hundreds. Four are left, where the normal of such a triangle makes it lighter or darker.
+  EXPECT_LT(specks(read_png(folder.path / "cans" / "frames" / "000000.png")), 10);
 }
 
 }  // namespace paint_test

@@ -96,8 +96,7 @@ class RoundingPass {
     const Vec3 a = point(edge.from), b = point(edge.to), straight = 0.5 * (a + b);
     const double length = (b - a).norm();
     if (length < roundness_.edge) return false;
-    // Where the middle is farther away than this, two parts of the surface face each other, and no curve joins the
-    // ends.
+    // A middle that is farther away than this lies on another part of the surface, which faces that of the ends.
     constexpr double furthest = 0.25;  // over the edge's length
     edge.middle = on_curve(edge, a, b);
     if (exact_ != nullptr) {
