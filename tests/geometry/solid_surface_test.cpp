@@ -221,11 +221,15 @@ TEST(SolidSurface, AxesAndUnitsAreThoseOfTheOptions) {
   EXPECT_TRUE(extent({.unit = LengthUnit::millimetre}).isApprox(Vec3(0.002, 0.004, 0.006)));
   EXPECT_TRUE(extent({.size = 3}).isApprox(Vec3(1, 2, 3)));
   // What was up in the file is up here, and right-handed axes stay so.
-  for (const UpAxis up : {UpAxis::x, UpAxis::y, UpAxis::z}) {
+  for (const UpAxis up : {UpAxis::x, UpAxis::y, UpAxis::z, UpAxis::minus_x, UpAxis::minus_y, UpAxis::minus_z}) {
     const TriMesh turned = set_up(box, {.up = up, .center = true});
     EXPECT_GT(volume(turned), 0);
     EXPECT_NEAR(bounds_of(turned.points).lower.y(), 0, 1e-12);
     EXPECT_NEAR(bounds_of(turned.points).center().x(), 0, 1e-12);
+    const int axis = static_cast<int>(up) % 3;
+    const double sign = static_cast<int>(up) < 3 ? 1 : -1;
+    const Positions placed = set_up(box, {.up = up}).points;
+    for (Eigen::Index i = 0; i < placed.rows(); ++i) EXPECT_EQ(placed(i, 1), sign * box.points(i, axis));
   }
 }
 

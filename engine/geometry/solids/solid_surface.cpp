@@ -109,13 +109,26 @@ std::string SurfaceOptions::text() const {
 namespace {
 
 void turn_and_scale(Positions& points, const SurfaceOptions& options) {
-  // A turn by a right angle exchanges coordinates, and needs no arithmetic.
-  if (options.up == UpAxis::z) {
-    points.col(1).swap(points.col(2));
-    points.col(2) *= -1;
-  } else if (options.up == UpAxis::x) {
-    points.col(0).swap(points.col(1));
-    points.col(0) *= -1;
+  // A turn by right angles exchanges coordinates, and needs no arithmetic.
+  switch (options.up) {
+    case UpAxis::y: break;
+    case UpAxis::z:
+      points = points(Eigen::all, {0, 2, 1}).eval();
+      points.col(2) *= -1;
+      break;
+    case UpAxis::x:
+      points = points(Eigen::all, {1, 0, 2}).eval();
+      points.col(0) *= -1;
+      break;
+    case UpAxis::minus_z:
+      points = points(Eigen::all, {0, 2, 1}).eval();
+      points.col(1) *= -1;
+      break;
+    case UpAxis::minus_x:
+      points = points(Eigen::all, {1, 0, 2}).eval();
+      points.col(1) *= -1;
+      break;
+    case UpAxis::minus_y: points.rightCols(2) *= -1; break;
   }
   if (options.unit != LengthUnit::metre) points *= metres(options.unit);
 }

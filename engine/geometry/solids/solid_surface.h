@@ -22,11 +22,13 @@ struct Names<Closing> {
                                        Name{Closing::winding, "winding"}, Name{Closing::never, "never"}};
 };
 
-// Names the axis of a file that points up; here that is y.
-enum class UpAxis { x, y, z };
+// Names the axis of a file that points up, or the one that points down; here y is up.
+enum class UpAxis { x, y, z, minus_x, minus_y, minus_z };
 template <>
 struct Names<UpAxis> {
-  static constexpr std::array table = {Name{UpAxis::x, "x"}, Name{UpAxis::y, "y"}, Name{UpAxis::z, "z"}};
+  static constexpr std::array table = {Name{UpAxis::x, "x"},        Name{UpAxis::y, "y"},
+                                       Name{UpAxis::z, "z"},        Name{UpAxis::minus_x, "-x"},
+                                       Name{UpAxis::minus_y, "-y"}, Name{UpAxis::minus_z, "-z"}};
 };
 
 // Names the unit of a file's coordinates.

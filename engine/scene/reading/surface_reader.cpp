@@ -17,7 +17,8 @@ SurfaceOptions read_surface_options(const ConfigTable& table) {
               {"thicken", "m", "thickness that parts of a surface with a rim get; without it they are closed"},
               Range::above(0, 1e6))
           .value_or(0);
-  options.up = table.word<UpAxis>({"up", "", "the axis of the surface's file that points up"}, options.up);
+  options.up = table.word<UpAxis>(
+      {"up", "", "the axis of the surface's file that points up; with a minus, its opposite does"}, options.up);
   options.unit = table.word<LengthUnit>({"units", "", "of the surface's file"}, options.unit);
   for (const char* key : {"close", "thicken", "up", "units"}) {
     const bool of_cloth = std::string_view(key) == "up" || std::string_view(key) == "units";
