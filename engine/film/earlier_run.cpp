@@ -103,6 +103,11 @@ bool is_same_model(const World& earlier, std::size_t there, const World& world, 
   return a == b && earlier.scene().time_step() == world.scene().time_step();
 }
 
+// Tells whether bounces off colliders, which are known by their numbers, are off the same ones.
+bool have_same_colliders(const World& a, const World& b) {
+  return std::ranges::equal(a.colliders().colliders, b.colliders().colliders, {}, &Collider::name, &Collider::name);
+}
+
 EarlierState state_of(const MovingBody& body) {
   const Model& model = body.model();
   const State& state = body.state();
@@ -112,6 +117,7 @@ EarlierState state_of(const MovingBody& body) {
   earlier.time = state.time;
   earlier.flow = state.flow;
   earlier.memory = state.memory;
+  earlier.bounces = state.bounces;
   for (std::size_t h = 0; h < state.anchors.holds.size(); ++h) {
     EarlierState::Held held{
         body.body().def.handles[h].name, {}, {}, state.anchors.centers[h], state.anchors.holds[h] != 0};
@@ -188,6 +194,7 @@ std::vector<std::string> take_over(const World& earlier, const EarlierFrame& fro
     check_fits(world.bodies()[b], earlier.body(other), from);
     EarlierState state = state_of(earlier.body(other));
     if (!is_same_model(earlier, other, world, b)) state.memory.reset();
+    if (here != there || !have_same_colliders(earlier, world)) state.bounces.begun.clear();
     world.begin_from(b, std::move(state));
   }
   std::vector<std::string> notes;

@@ -53,6 +53,7 @@ Islands::Islands(const SceneDef& scene, const std::vector<std::unique_ptr<Moving
       solvers_(solvers),
       threads_(threads),
       finder_(scene, bodies),
+      restitution_(scene, bodies),
       owns_(bodies.size()),
       wasted_(bodies.size(), 0.0) {}
 Islands::~Islands() = default;
@@ -141,6 +142,17 @@ StepReport report_of_part(const Model& joined, std::size_t number, const StepRep
 
 }  // namespace
 
+namespace {
+
+// Returns where the point of a contact between two surfaces is; the vertices of the other place have negative weights.
+Vec3 place_of_point(const ContactStencil& stencil, const Positions& x) {
+  Vec3 place = Vec3::Zero();
+  for (int k = 0; k < stencil.count; ++k) place += std::max(0.0, stencil.weight[k]) * x.row(stencil.vertex[k]);
+  return place;
+}
+
+}  // namespace
+
 void Islands::note_touches(const std::vector<std::size_t>& island, const Model& joined, const Positions& x,
                            const std::vector<Contact>& contacts) {
   std::map<std::pair<std::size_t, std::size_t>, BodyTouch> by_pair;
@@ -153,10 +165,15 @@ void Islands::note_touches(const std::vector<std::size_t>& island, const Model& 
     BodyTouch& touch = by_pair.try_emplace({a, b}, BodyTouch{.a = a, .b = b}).first->second;
     ++touch.contacts;
     touch.depth = std::max(touch.depth, inside);
-    const Vec3 on_point = -2 * contact.stiffness * std::min(0.0, above) * contact.normal;
-    touch.force += point == b ? on_point : Vec3(-on_point);
+    const double pressing = -2 * contact.stiffness * std::min(0.0, above);
+    touch.force += (point == b ? pressing : -pressing) * contact.normal;
+    touch.pressing += pressing;
+    touch.place += pressing * place_of_point(contact.stencil, x);
   }
-  for (const auto& [pair, touch] : by_pair) touches_.push_back(touch);
+  for (auto& [pair, touch] : by_pair) {
+    if (touch.pressing > 0) touch.place /= touch.pressing;
+    touches_.push_back(touch);
+  }
   std::ranges::sort(touches_, {}, [](const BodyTouch& touch) { return std::pair(touch.a, touch.b); });
 }
 
@@ -193,11 +210,18 @@ bool Islands::comes_through_itself(std::size_t body, const Positions& q) {
                               : own.surface->touches(*own.moving, q, x, carried);
 }
 
+int Islands::step(const std::vector<std::size_t>& island) {
+  restitution_.before_step(island);
+  const int failed = step_without_bounce(island);
+  if (failed < 0) restitution_.after_step(island, touches_);
+  return failed;
+}
+
 // Which bodies touch themselves in a step must follow from the states alone, and not from whether a body was looked at
 // before its step or after it: those that begin in themselves come first, then those that come through themselves in
 // the step of these. A step with a budget of time is made once, by what begins in itself alone: its cuts are repeated
 // in other runs, and those of a step that is thrown away are not known there.
-int Islands::step(const std::vector<std::size_t>& island) {
+int Islands::step_without_bounce(const std::vector<std::size_t>& island) {
   std::vector<std::size_t> able;  // members
   for (std::size_t m = 0; m < island.size(); ++m)
     if (meets_itself(scene_.bodies[island[m]])) able.push_back(m);
@@ -303,9 +327,13 @@ std::vector<std::size_t> Islands::step_at_once(const std::vector<std::size_t>& i
 // Makes a body's step without regard to others or itself. Returns false, and changes no state, where it fails or the
 // body comes through itself.
 bool Islands::step_alone(std::size_t body) {
+  restitution_.before_step({body});
   const bool is_able = meets_itself(scene_.bodies[body]);
   const State before = bodies_[body]->state();
-  if (!bodies_[body]->step().failed && !(is_able && comes_through_itself(body, before.x))) return true;
+  if (!bodies_[body]->step().failed && !(is_able && comes_through_itself(body, before.x))) {
+    restitution_.after_step({body}, touches_);
+    return true;
+  }
   wasted_[body] = bodies_[body]->report().step_ms;
   bodies_[body]->state_ = before;
   return false;

@@ -16,18 +16,12 @@
 #include <vector>
 
 #include "geometry/triangles/moving_surface.h"
+#include "world/body_touch.h"
 #include "world/island_finder.h"
 #include "world/moving_body.h"
+#include "world/restitution.h"
 
 namespace supple {
-
-// Tells how two bodies touched each other, or one touched itself, at the end of a step.
-struct BodyTouch {
-  std::size_t a, b;           // the bodies, the earlier one first; equal where a body touched itself
-  int contacts = 0;           // points of either body that touch the other
-  double depth = 0;           // of the deepest of these points in the other body [m]
-  Vec3 force = Vec3::Zero();  // of a on b [N]
-};
 
 // Names the step of an island that was made last, for those who repeat it. It holds until the next step is made.
 struct JoinedStep {
@@ -61,7 +55,8 @@ class Islands {
   // Returns how much shorter the steps that were made since find() took together than one after the other [ms].
   double saved_ms() const { return saved_ms_; }
 
-  // Makes the step of an island. Returns the body whose step failed, or -1; if one failed, no state changes.
+  // Makes the step of an island, and lets its bodies bounce. Returns the body whose step failed, or -1; if one failed,
+  // no state changes.
   int step(const std::vector<std::size_t>& island);
 
  private:
@@ -71,6 +66,7 @@ class Islands {
   using Selves = std::vector<char>;
 
   Together& together(const std::vector<std::size_t>& island);
+  int step_without_bounce(const std::vector<std::size_t>& island);
   int step_once(const std::vector<std::size_t>& island, const Selves& selves);
   int step_together(const std::vector<std::size_t>& island, const Selves& selves);
   bool step_alone(std::size_t body);
@@ -86,6 +82,7 @@ class Islands {
   Solvers solvers_;
   Threads* threads_;
   IslandFinder finder_;
+  Restitution restitution_;
   std::vector<Own> owns_;       // by body
   std::vector<double> wasted_;  // by body: time of a step at once that must be made again [ms]
   std::vector<BodyTouch> touches_;

@@ -55,6 +55,7 @@ class MovingBody {
  private:
   friend class World;
   friend class Islands;
+  friend class Restitution;
 
   // Takes over a changed scene and body definition, and recomputes what the change requires.
   void apply(const ChangeCost& cost);

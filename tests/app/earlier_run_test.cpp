@@ -7,6 +7,7 @@
 
 #include "support/bodies.h"
 #include "support/program.h"
+#include "support/text_file.h"
 
 namespace supple {
 namespace earlier_run_test {
@@ -115,6 +116,29 @@ TEST_F(EarlierRun, GoesOnWithTheSameBitsTimesAndPictures) {
   EXPECT_EQ(read_file(path("own.png")), read_file(path("other.png"))) << "both are compared at the same time";
   const Result early = distance("whole", "later", "early.png");
   EXPECT_NE(early.err.find("starts 10 frames after the frame 0"), std::string::npos) << early.err;
+}
+
+TEST_F(EarlierRun, GoesOnInTheMiddleOfABounce) {
+  test::write_text(path("bounce.toml"), R"(fps = 120
+[[body]]
+shape = "shapes/sphere.toml"
+size = 0.2
+vertices = 200
+position = [0, 0.02, 0]
+velocity = [0, -2, 0]
+material = { model = "neo-hookean", young = 2e4, poisson = 0.4 }
+contact = { restitution = 0.8 }
+[[collider]]
+shape = { half_space = { normal = [0, 1, 0] } }
+)");
+  ASSERT_EQ(run(folder(), {"render", "bounce.toml", "--out", "bounce", "--frames", "20", "--no-images"}).status, 0);
+  const nlohmann::json then = profile_of(path("bounce"))["frames"];
+  for (const int frame : {3, 6}) {
+    const Result later = run(folder(), {"render", "bounce.toml", "--out", "rest", "--from", "bounce", "--frame",
+                                        number(frame), "--frames", number(19 - frame), "--no-images", "--force"});
+    ASSERT_EQ(later.status, 0) << later.err;
+    EXPECT_EQ(profile_of(path("rest"))["frames"].back()["state_hash"], then[19]["state_hash"]) << frame;
+  }
 }
 
 TEST_F(EarlierRun, StartsFromTheCheckpointOfTheRunWhereThatIsEarlyEnough) {

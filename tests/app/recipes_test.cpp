@@ -85,7 +85,7 @@ TEST(Recipes, AreShortHaveNothingToWarnOfAndAreNamedByTheirPage) {
   const std::filesystem::path folder = test::source_folder / "docs" / "examples" / "films";
   const std::string page = read_file(test::source_folder / "docs" / "recipes.md"), script = read_file(folder / "make");
   std::vector<std::filesystem::path> scenes = files_in(folder, ".toml");
-  ASSERT_EQ(scenes.size(), 7u);
+  ASSERT_EQ(scenes.size(), 8u);
   for (const std::filesystem::path& scene : scenes) {
     const std::string text = read_file(scene), name = scene.filename().string();
     EXPECT_LE(std::ranges::count(text, '\n'), 40) << name;

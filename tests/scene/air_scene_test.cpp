@@ -12,6 +12,7 @@
 #include "sim/air/closed_surface.h"
 #include "sim/measures/energies.h"
 #include "support/bodies.h"
+#include "support/energy_watch.h"
 #include "support/played_world.h"
 #include "support/scene_text.h"
 #include "support/surfaces.h"
@@ -221,37 +222,10 @@ TEST(AirOfAScene, ListsItsLiveValues) {
     EXPECT_NE(std::ranges::find(paths, path), paths.end()) << path;
 }
 
-// Returns the largest share of energy from nothing of any body, and by reference all that was put in.
-double from_nothing(World& world, int frames, double& put_in) {
-  std::vector<EnergyBudget> budgets(world.size());
-  std::vector<Positions> before(world.size());
-  for (std::size_t b = 0; b < world.size(); ++b) {
-    MovingBody& body = world.body(b);
-    body.workspace().prepare(body.model(), body.inputs().solver);
-    budgets[b].start(body.model(), body.inputs(), body.state(), body.workspace());
-  }
-  double most = 0;
-  const StepWatch watch{[&](std::size_t b, int) {
-                          MovingBody& body = world.body(b);
-                          budgets[b].know_springs(body.model(), body.targets_at_start(), body.state());
-                          budgets[b].before_step(body.model(), body.inputs(), body.state(), body.workspace());
-                          before[b] = body.state().x;
-                        },
-                        [&](std::size_t b, int) {
-                          MovingBody& body = world.body(b);
-                          budgets[b].after_step(body.model(), body.inputs(), before[b], body.state(), body.workspace());
-                          const EnergyBalance& balance = budgets[b].balance();
-                          if (balance.exchanged > 0) most = std::max(most, balance.from_nothing / balance.exchanged);
-                        }};
-  for (int i = 0; i < frames; ++i) EXPECT_TRUE(world.play(i, watch));
-  put_in = budgets.front().balance().put_in;
-  return most;
-}
-
 TEST(AirOfAScene, HasItsWorkCountedAsPutIn) {
   World world = world_of("solver = { iterations = 20 }\n" + flag + wind);
   double put_in = 0;
-  EXPECT_LT(from_nothing(world, 100, put_in), 0.01);
+  EXPECT_LT(test::share_from_nothing(world, 100, put_in), 0.01);
   EXPECT_GT(put_in, 0.01);
 }
 
@@ -292,7 +266,7 @@ value = 3000
     World world = test::world_of(folder.path / "r.toml");
     const double rest = volume_of(world, 0);
     double put_in = 0;
-    EXPECT_LT(from_nothing(world, 90, put_in), 0.01) << amount;
+    EXPECT_LT(test::share_from_nothing(world, 90, put_in), 0.01) << amount;
     EXPECT_GT(volume_of(world, 0), 1.02 * rest) << amount;
     EXPECT_NE(put_in, 0) << amount;
   }
@@ -312,7 +286,7 @@ TEST(Balloon, KeepsItsVolumeWhereItMeetsAnother) {
   const double rest = volume_of(world, 0);
   bool together = false;
   double put_in = 0;
-  EXPECT_LT(from_nothing(world, 5, put_in), 0.01);
+  EXPECT_LT(test::share_from_nothing(world, 5, put_in), 0.01);
   for (int i = 5; i < 40; ++i) {
     ASSERT_TRUE(world.play(i));
     together |= world.body(0).is_in_island();

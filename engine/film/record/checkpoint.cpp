@@ -72,6 +72,8 @@ std::string checkpoint_bytes(const WorldState& checkpoint, const std::string& id
                               {"time_s", body.time},
                               {"memory_bytes", bytes_of(body.memory).size()}});
     if (!body.flow.empty()) head["bodies"].back()["flow_bytes"] = bytes_of(body.flow).size();
+    if (const std::string bounces = bytes_of(body.bounces); !bounces.empty())
+      head["bodies"].back()["bounce_bytes"] = bounces.size();
   }
   const std::string text = exact_json_text(head);
   std::string bytes(signature);
@@ -84,6 +86,7 @@ std::string checkpoint_bytes(const WorldState& checkpoint, const std::string& id
     for (const Vec3& center : body.anchors.centers) append(bytes, center.transpose());
     bytes += bytes_of(body.memory);
     bytes += bytes_of(body.flow);
+    bytes += bytes_of(body.bounces);
   }
   append_number(bytes, hash_text(bytes));
   return bytes;
@@ -114,6 +117,9 @@ State read_body(const Json& body, Reader& reader) {
   std::optional<Flow> flow = flow_from(reader.take(body.value("flow_bytes", std::size_t(0))));
   if (!flow) reader.fail();
   state.flow = *std::move(flow);
+  std::optional<Bounces> bounces = bounces_from(reader.take(body.value("bounce_bytes", std::size_t(0))));
+  if (!bounces) reader.fail();
+  state.bounces = *std::move(bounces);
   for (const Json& held : body.at("holds")) state.anchors.holds.push_back(held.get<bool>());
   return state;
 }

@@ -355,6 +355,7 @@ State later_state(const Model& model, const Body& body, const EarlierState& from
     if (body.def.handles[h].grabs) state.anchors.holds[h] = 0;  // it takes hold in the first step, of where the body is
   for (const EarlierState::Held& held : from.handles) take_over(held, model, body, state.anchors);
   if (from.memory) state.memory = *from.memory;
+  state.bounces = from.bounces;
   return state;
 }
 

@@ -11,6 +11,7 @@
 #include "scene/definition/scene_def.h"
 #include "sim/model/flow.h"
 #include "sim/model/model.h"
+#include "sim/model/bounces.h"
 #include "sim/model/solver_memory.h"
 
 namespace supple {
@@ -30,6 +31,7 @@ struct EarlierState {
   Flow flow;                           // the shape that it keeps
   double time = 0;                     // [s]
   std::optional<SolverMemory> memory;  // nothing where the body is another one now
+  Bounces bounces;                     // none where there are other bodies or colliders now
 };
 
 // Represents a body that is ready to be simulated and drawn, between what a file says of it (BodyDef, scene_def.h) and

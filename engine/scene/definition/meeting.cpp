@@ -47,4 +47,12 @@ bool meets_itself(const BodyDef& body) { return body.contact.self; }
 
 double pair_friction(const BodyDef& a, const BodyDef& b) { return std::sqrt(a.contact.friction * b.contact.friction); }
 
+double pair_restitution(const BodyDef& a, const BodyDef& b) {
+  return a.cloth || b.cloth ? 0 : std::max(a.contact.restitution, b.contact.restitution);
+}
+
+double pair_restitution(const BodyDef& body, const ColliderDef& collider) {
+  return body.cloth ? 0 : std::max(body.contact.restitution, collider.restitution);
+}
+
 }  // namespace supple

@@ -1,6 +1,7 @@
-// Tells which bodies of a scene meet, which means that they touch and push each other, and with how much friction. Two
-// bodies meet where both allow it (BodyContactDef) and nothing about them is in the way. Not here: contact with
-// colliders (sim/contact/), and what is said of bodies that overlap (scene/building/body_depths.h, body_passings.h).
+// Tells which bodies of a scene meet, which means that they touch and push each other, with how much friction, and how
+// they bounce. Two bodies meet where both allow it (BodyContactDef) and nothing about them is in the way. Not here:
+// contact with colliders (sim/contact/), and what is said of bodies that overlap (scene/building/body_depths.h,
+// body_passings.h).
 #pragma once
 
 #include <cstddef>
@@ -31,5 +32,12 @@ std::string why_not_meet(const BodyDef& a, const BodyDef& b);
 
 // Returns the coefficient of Coulomb's law between two bodies: the geometric mean of their shares.
 double pair_friction(const BodyDef& a, const BodyDef& b);
+
+// Returns the share of their speed that two bodies keep at least when they bounce off each other: the larger of theirs.
+// It is 0 where one is a cloth, which has no motion as a whole.
+double pair_restitution(const BodyDef& a, const BodyDef& b);
+
+// Returns the same of a body and a collider.
+double pair_restitution(const BodyDef& body, const ColliderDef& collider);
 
 }  // namespace supple

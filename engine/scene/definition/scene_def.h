@@ -178,10 +178,11 @@ struct Names<ColorSource> {
 struct BodyContactDef {
   // Names the only bodies that it meets, none where the list is empty. Nothing: it meets all.
   std::optional<std::vector<std::string>> meets;
-  FilePlace meets_place;  // of `meets` in the file, for messages once all bodies are known
-  bool self = true;       // whether it touches itself
-  bool skin = false;      // whether the drawn skin touches colliders in the stead of the elements
-  double friction = 0.5;  // its share of the coefficient of Coulomb's law between it and another body
+  FilePlace meets_place;   // of `meets` in the file, for messages once all bodies are known
+  bool self = true;        // whether it touches itself
+  bool skin = false;       // whether the drawn skin touches colliders in the stead of the elements
+  double friction = 0.5;   // its share of the coefficient of Coulomb's law between it and another body
+  double restitution = 0;  // the share of its speed that it keeps at least when it bounces off a collider or a body
 };
 
 struct BodySurface;  // body_pieces.h
@@ -249,7 +250,8 @@ struct ColliderDef {
   Vec3 position = Vec3(0, 0, 0);  // of its origin [m]
   Vec3 turn_deg = Vec3(0, 0, 0);
   double friction = 0;
-  double thickness = 0;  // [m]
+  double restitution = 0;  // the share of its speed that a body keeps at least when it bounces off the collider
+  double thickness = 0;    // [m]
   Ease ease = Ease::smooth;
   std::vector<MotionKey> keys;
   std::optional<SurfaceMotionDef> motion;  // nothing: it is rigid

@@ -257,6 +257,10 @@ BodyContactDef read_contact(const ConfigTable& body) {
                                     "its share of Coulomb's coefficient between two bodies, which is the geometric "
                                     "mean of both; with a collider the collider's counts"},
                                    contact.friction, Range::between(0, 100));
+  contact.restitution = table->number({"restitution", "",
+                                       "share of its speed that it keeps at least when it bounces; the larger of those "
+                                       "of the two that touch counts"},
+                                      contact.restitution, Range::between(0, 1));
   return contact;
 }
 
@@ -363,6 +367,8 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   body.pressure = read_pressure(table);
   body.pressure_place = table.place("pressure");
   body.contact = read_contact(table);
+  if (body.cloth && body.contact.restitution > 0)
+    table.complain("contact", "contact.restitution: of solids; a cloth has no motion as a whole that could bounce");
   std::set<std::string> names;
   for (const ConfigTable& row : table.tables({"handles", "", "vertices that follow a motion from outside"})) {
     body.handles.push_back(read_handle(row));

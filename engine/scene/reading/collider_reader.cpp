@@ -104,6 +104,9 @@ ColliderDef read_collider(const ConfigTable& table) {
   collider.position = table.vector({"position", "m", "of the shape's origin"}, Vec3(0, 0, 0));
   collider.turn_deg = table.vector({"turn_deg", "degrees", "rotation about x, then y, then z"}, Vec3(0, 0, 0));
   collider.friction = table.number({"friction", "", "Coulomb's coefficient"}, 0.0, Range::between(0, 100));
+  collider.restitution =
+      table.number({"restitution", "", "share of its speed that a body keeps at least when it bounces off"}, 0.0,
+                   Range::between(0, 1));
   collider.thickness = table.number(
       {"thickness", "m", "of a layer around the shape that already pushes, so that drawn surfaces stay apart"}, 0.0,
       Range::at_least(0));

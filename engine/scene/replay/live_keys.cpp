@@ -66,6 +66,7 @@ constexpr auto patterns = std::to_array<LivePattern>({
     {"collider[].position", nothing},
     {"collider[].turn_deg", nothing},
     {"collider[].friction", nothing},
+    {"collider[].restitution", nothing},
     {"collider[].thickness", nothing},
     {"collider[].ease", nothing},
     {"collider[].keys", nothing},

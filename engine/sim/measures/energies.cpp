@@ -75,6 +75,7 @@ void EnergyBudget::start(const Model& model, const StepInputs& inputs, const Sta
   most_ = balance_.exchanged;
   moved_ = 0;
   balance_.flowed = known_flow_ = state.flow.lost;
+  known_bounces_ = state.bounces.given;
   lowest_ = balance_.total - balance_.put_in - balance_.from_nothing;
   model_ = model.id;
   knows_springs_ = false;
@@ -83,6 +84,12 @@ void EnergyBudget::start(const Model& model, const StepInputs& inputs, const Sta
 void EnergyBudget::add_to_budget(double work) {
   balance_.put_in += work;
   moved_ += std::abs(work);
+}
+
+void EnergyBudget::count_bounces(const State& state) {
+  if (state.bounces.given == known_bounces_) return;
+  add_to_budget(state.bounces.given - known_bounces_);
+  known_bounces_ = state.bounces.given;
 }
 
 void EnergyBudget::know_springs(const Model& model, const Positions& targets, const State& state) {
@@ -115,6 +122,7 @@ void EnergyBudget::after_step(const Model& model, const StepInputs& inputs, cons
   if (!w.current.contacts.empty()) add_to_budget(work_of_contacts(inputs, q, w));
   // before_step() has begun the air's forces, also for a body whose step was made in a model of several.
   if (w.air.act()) add_to_budget(w.air.work(model, state.x));
+  count_bounces(state);
   set_motion(model, state, inputs.gravity, parts_);
   // Backward Euler has evaluated the elements where the step ends; the step of an island, not those of each body.
   const bool is_known = model.scheme.theta == 1 && std::isfinite(w.current.elastic);
@@ -143,6 +151,7 @@ void EnergyBudget::after_untangling(const Model& model, const StepInputs& inputs
   parts_.gas = w.air.gas_energy(model, state.x);
   parts_.contact = contact_energy(w.current.contacts, state.x);
   add_to_budget(parts_.total() - before);
+  known_bounces_ = state.bounces.given;
   sum_up();
 }
 

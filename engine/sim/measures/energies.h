@@ -21,7 +21,7 @@ Energies energies(const Model& model, const State& state, const Vec3& gravity, O
 // Holds what a body has, and what it was given, since its film began [J].
 struct EnergyBalance {
   double total = 0;
-  double put_in = 0;        // by handles, contact, air and changed values; negative where more was taken
+  double put_in = 0;        // by handles, contact, restitution, air and changed values; negative where more was taken
   double from_nothing = 0;  // how far total - put_in is above its lowest value so far
   // The largest sum of kinetic, elastic and springs' energy so far, and all that was put in or taken; the other values
   // are compared with it.
@@ -55,14 +55,17 @@ class EnergyBudget {
 
  private:
   void add_to_budget(double work);
+  // Counts the energy that restitution gave since the last call.
+  void count_bounces(const State& state);
   void sum_up();
 
   Energies parts_;
   EnergyBalance balance_;
-  double lowest_ = 0;      // the lowest total - put_in so far
-  double known_flow_ = 0;  // Flow::lost when parts_ was computed
-  double most_ = 0;        // the largest sum of the parts that are never negative
-  double moved_ = 0;       // sum of all work, each as positive
+  double lowest_ = 0;         // the lowest total - put_in so far
+  double known_flow_ = 0;     // Flow::lost when parts_ was computed
+  double known_bounces_ = 0;  // Bounces::given when parts_ was computed
+  double most_ = 0;           // the largest sum of the parts that are never negative
+  double moved_ = 0;          // sum of all work, each as positive
   std::uint64_t model_ = 0;
   bool knows_springs_ = false;  // whether parts_.springs is the springs' present energy
 };

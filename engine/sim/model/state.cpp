@@ -8,7 +8,7 @@
 namespace supple {
 
 State rest_state(const Model& model) {
-  return {model.rest, Positions::Zero(model.vertices, 3), 0, {}, {}, rest_flow(model)};
+  return {model.rest, Positions::Zero(model.vertices, 3), 0, {}, {}, rest_flow(model), {}};
 }
 
 Positions in_input_order(const Model& model, const Positions& rows) {

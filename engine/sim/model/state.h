@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "sim/model/bounces.h"
 #include "sim/model/flow.h"
 #include "sim/model/solver_memory.h"
 
@@ -30,6 +31,7 @@ struct State {
   Anchors anchors;      // may stay empty where only steps are made: they do not read them
   SolverMemory memory;  // what the body's solver remembers of earlier steps; empty: nothing
   Flow flow;            // the shape that the body keeps, between steps changed by let_flow() (flow_step.h)
+  Bounces bounces;      // that have begun and are not over; World alone (world/) makes bodies bounce
 };
 
 // Returns the state of a model that is at rest where it was built.

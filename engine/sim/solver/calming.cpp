@@ -1,76 +1,11 @@
 #include "sim/solver/calming.h"
 
-#include <Eigen/Eigenvalues>
+#include "sim/solver/rigid_motion.h"
 
 namespace supple {
-namespace {
-
-// Holds the velocity of a rigid body: that of its centre, and how it turns about it.
-struct RigidVelocity {
-  Vec3 center, linear, angular;  // [m], [m/s], [rad/s]
-
-  Vec3 at(const Vec3& place) const { return linear + angular.cross(place - center); }
-};
-
-// Tells how much the vertices' velocities count in the fit of the rigid one.
-class Weights {
- public:
-  explicit Weights(const Model& model) : model_(model) {
-    double mass = 0;
-    for (int i = 0; i < model.free; ++i) mass += model.mass[i];
-    constexpr double held_over_free = 1e6;  // so that the fit follows what is held, and keeps ten digits
-    held_ = held_over_free * mass;
-  }
-  double operator()(int vertex) const {
-    const bool held =
-        vertex >= model_.free || (!model_.handle_stiffness.empty() && model_.handle_stiffness[vertex] > 0);
-    return held ? held_ : model_.mass[vertex];
-  }
-
- private:
-  const Model& model_;
-  double held_;  // of one that a handle holds [kg]
-};
-
-// Returns the smallest of the vectors that a symmetric matrix takes nearest to `right`. Vertices in one line do not
-// turn about it, so that their inertia is singular.
-Vec3 least_solution(const Mat3& matrix, const Vec3& right) {
-  const Eigen::SelfAdjointEigenSolver<Mat3> solver(matrix);
-  const Vec3& values = solver.eigenvalues();  // in ascending order
-  Vec3 solution = Vec3::Zero();
-  for (int k = 0; k < 3; ++k) {
-    if (values[k] > 1e-12 * values[2])
-      solution += solver.eigenvectors().col(k) * (solver.eigenvectors().col(k).dot(right) / values[k]);
-  }
-  return solution;
-}
-
-RigidVelocity rigid_velocity(const Model& model, const Positions& x, const Positions& v) {
-  const Weights weight(model);
-  RigidVelocity rigid{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-  double sum = 0;
-  for (int i = 0; i < model.vertices; ++i) {
-    sum += weight(i);
-    rigid.center += weight(i) * x.row(i).transpose();
-    rigid.linear += weight(i) * v.row(i).transpose();
-  }
-  rigid.center /= sum;
-  rigid.linear /= sum;
-  Mat3 inertia = Mat3::Zero();
-  Vec3 momentum = Vec3::Zero();
-  for (int i = 0; i < model.vertices; ++i) {
-    const Vec3 arm = x.row(i).transpose() - rigid.center;
-    inertia += weight(i) * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
-    momentum += weight(i) * arm.cross(Vec3(v.row(i).transpose()));
-  }
-  rigid.angular = least_solution(inertia, momentum);
-  return rigid;
-}
-
-}  // namespace
 
 void calm(const Model& model, double kept, const Positions& x, Positions& v) {
-  const RigidVelocity rigid = rigid_velocity(model, x, v);
+  const RigidMotion rigid = rigid_motion(model, x, v);
   for (int i = 0; i < model.free; ++i) {
     const Vec3 whole = rigid.at(x.row(i).transpose());
     v.row(i) = (whole + kept * (v.row(i).transpose() - whole)).transpose();

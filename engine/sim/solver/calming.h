@@ -1,10 +1,7 @@
 // Takes energy out of the movement within a body, and leaves its falling, flying, turning and swinging as a whole
-// alone: the part of the velocities that is no rigid motion dies down, as in Mueller, Heidelberger, Hennix, Ratcliff
-// 2007, "Position based dynamics", section 3.5. Linear and angular momentum stay as they are, and kinetic energy never
-// grows, because the rigid part is what a least-squares fit with the masses as weights gives. Where handles hold
-// vertices, the rigid motion is one that goes with these: a body on a hinge swings on, and one that is clamped has
-// none. Not here: stiffness-proportional damping, a term of the objective that also slows turning
-// (solver/objective.cpp).
+// alone: the part of the velocities that is no rigid motion (rigid_motion.h) dies down. Linear and angular momentum
+// stay as they are, and kinetic energy never grows, because the rigid part is a least-squares fit. Not here:
+// stiffness-proportional damping, a term of the objective that also slows turning (solver/objective.cpp).
 #pragma once
 
 #include "sim/model/model.h"

@@ -1,0 +1,31 @@
+// Finds how a body moves as a whole: the rigid motion that is nearest to the velocities of its vertices, by a
+// least-squares fit with the masses as weights, as in Mueller, Heidelberger, Hennix, Ratcliff 2007, "Position based
+// dynamics", section 3.5. It has the linear and the angular momentum of the body. Where handles hold vertices, the
+// rigid motion is one that goes with these: a body on a hinge swings about it, and one that is clamped stays.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "sim/model/model.h"
+
+namespace supple {
+
+// Holds the velocity of a rigid body, and how it resists a push.
+struct RigidMotion {
+  double mass = 0;                                     // [kg]
+  Mat3 inertia = Mat3::Zero();                         // about the center [kg m^2]
+  Vec3 center = Vec3::Zero();                          // of mass [m]
+  Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();  // velocities [m/s], [rad/s]
+
+  // Returns the velocity of a place that goes with the body [m/s].
+  Vec3 at(const Vec3& place) const { return linear + angular.cross(place - center); }
+  // Returns how an impulse [N s] at a place changes the velocities. Mass, inertia and center are the same.
+  RigidMotion pushed(const Vec3& impulse, const Vec3& place) const;
+  // Returns how the velocity of the place changes by it [m/s].
+  Vec3 change_at(const Vec3& place, const Vec3& impulse) const { return pushed(impulse, place).at(place) - at(place); }
+};
+
+// x: positions, n x 3, in the model's order [m]; v: velocities, n x 3 [m/s].
+RigidMotion rigid_motion(const Model& model, const Positions& x, const Positions& v);
+
+}  // namespace supple

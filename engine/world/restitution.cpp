@@ -1,0 +1,237 @@
+#include "world/restitution.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/trace.h"
+#include "scene/definition/meeting.h"
+#include "sim/contact/find_contacts.h"
+#include "sim/solver/open_workspace.h"
+
+namespace supple {
+
+// Tells where and how a body touches a collider or a body that comes later in the scene.
+struct Restitution::Touching {
+  std::int32_t collider = -1, body = -1;
+  Vec3 push = Vec3::Zero();   // on the body [N]
+  double pressing = 0;        // sum of the sizes of the forces [N]
+  Vec3 place = Vec3::Zero();  // the mean of where they press, by force [m]
+  Vec3 way = Vec3::Zero();    // the mean way in the step of what touches, against the collider [m]
+
+  bool is_of(const Bounce& bounce) const { return collider == bounce.collider && body == bounce.body; }
+};
+
+Restitution::Restitution(const SceneDef& scene, const std::vector<std::unique_ptr<MovingBody>>& bodies)
+    : scene_(scene), bodies_(bodies), before_(bodies.size()), after_(bodies.size()) {}
+
+bool Restitution::may_bounce(const std::vector<std::size_t>& island) const {
+  const auto bounces = [](const auto& contact) { return contact.restitution > 0; };
+  const auto is_in_bounce = [&](std::size_t b) { return !bodies_[b]->state_.bounces.begun.empty(); };
+  return std::ranges::any_of(scene_.colliders, bounces) || std::ranges::any_of(island, is_in_bounce) ||
+         std::ranges::any_of(island, [&](std::size_t b) { return bounces(scene_.bodies[b].contact); });
+}
+
+double Restitution::coefficient(std::size_t owner, const Bounce& bounce) const {
+  const BodyDef& body = scene_.bodies[owner];
+  return bounce.body >= 0 ? pair_restitution(body, scene_.bodies[bounce.body])
+                          : pair_restitution(body, scene_.colliders[bounce.collider]);
+}
+
+double Restitution::friction(std::size_t owner, const Bounce& bounce) const {
+  return bounce.body >= 0 ? pair_friction(scene_.bodies[owner], scene_.bodies[bounce.body])
+                          : scene_.colliders[bounce.collider].friction;
+}
+
+// Tells whether a body falls as a whole: nothing holds it.
+bool Restitution::falls(std::size_t body) const {
+  const Model& model = bodies_[body]->model();
+  const auto is_held = [](double stiffness) { return stiffness > 0; };
+  return model.free == model.vertices && std::ranges::none_of(model.handle_stiffness, is_held);
+}
+
+// Returns the acceleration by which gravity drives the two sides together; it is 0 where both fall [m/s^2].
+double Restitution::gravity_between(std::size_t owner, const Bounce& bounce) const {
+  const double falling = (falls(owner) ? 1 : 0) - (bounce.body >= 0 && falls(bounce.body) ? 1 : 0);
+  return std::max(0.0, -falling * bounce.normal.dot(scene_.gravity));
+}
+
+// Returns how the body moves against the other side where the two touch [m/s].
+Vec3 Restitution::velocity_between(std::size_t owner, const Bounce& bounce, const Motions& motions) const {
+  const Vec3 own = motions[owner].at(motions[owner].center + bounce.arm);
+  if (bounce.body >= 0) return own - motions[bounce.body].at(motions[bounce.body].center + bounce.other_arm);
+  const MovingBody& body = *bodies_[owner];
+  const Vec3 place = after_[owner].center + bounce.arm;
+  return own - (carried_by(body.inputs(), bounce.collider, place) - place) / body.model().time_step;
+}
+
+void Restitution::before_step(const std::vector<std::size_t>& island) {
+  if (!may_bounce(island)) return;
+  for (const std::size_t b : island)
+    before_[b] = rigid_motion(bodies_[b]->model(), bodies_[b]->state_.x, bodies_[b]->state_.v);
+}
+
+std::vector<Restitution::Touching> Restitution::touchings(std::size_t owner,
+                                                          const std::vector<BodyTouch>& touches) const {
+  std::vector<Touching> result;
+  const MovingBody& body = *bodies_[owner];
+  const Positions &x = body.state_.x, &v = body.state_.v;
+  for (const Contact& contact : bodies_[owner]->workspace().current.contacts) {
+    const double pressing = -2 * contact.stiffness * std::min(0.0, gap(contact, x));
+    if (!contact.other.is_collider() || pressing <= 0) continue;
+    auto at = std::ranges::find(result, contact.other.collider, &Touching::collider);
+    if (at == result.end()) at = result.insert(at, {.collider = contact.other.collider});
+    const Vec3 place = contact.stencil.at(x), carried = carried_by(body.inputs(), at->collider, place) - place;
+    at->push += pressing * contact.normal;
+    at->pressing += pressing;
+    at->place += pressing * place;
+    at->way += pressing * (body.model().time_step * contact.stencil.at(v) - carried);
+  }
+  for (Touching& touching : result) {
+    touching.place /= touching.pressing;
+    touching.way /= touching.pressing;
+  }
+  for (const BodyTouch& touch : touches) {
+    if (touch.a != owner || touch.b == owner || touch.pressing <= 0) continue;
+    result.push_back({.body = static_cast<std::int32_t>(touch.b),
+                      .push = -touch.force,
+                      .pressing = touch.pressing,
+                      .place = touch.place});
+  }
+  // Pushes from all sides, as of a ring that is threaded on a bar, have no direction in which to bounce.
+  constexpr double least_direction = 0.3;  // of the sum of the forces' sizes
+  std::erase_if(result, [](const Touching& t) { return t.push.norm() < least_direction * t.pressing; });
+  return result;
+}
+
+// Takes the share of a step of the approach, and begins to let the two leave when it is over. gained: by how much they
+// came together more slowly after the step; speed: at which they go apart after it [m/s].
+// Returns false where they do not bounce.
+bool Restitution::approach(std::size_t owner, Bounce& bounce, double gained, double speed) const {
+  constexpr double stopped = 0.1;  // of the approach: contact stops the rest of it in many steps
+  const Model& model = bodies_[owner]->model();
+  bounce.shares.push_back(std::max(0.0, gained));
+  bounce.sunk += model.time_step * std::max(0.0, -speed);
+  if (speed < -stopped * bounce.approach) return true;
+  // What gravity gave since they touched it takes again while they leave. The velocity of a step of backward Euler is
+  // that in the middle of it, half a step of falling behind its start.
+  const double gravity = gravity_between(owner, bounce);
+  const double half_a_step = model.scheme.theta == 1 ? 0.5 * model.time_step : 0;
+  bounce.target =
+      std::hypot(coefficient(owner, bounce) * bounce.approach, std::sqrt(2 * gravity * std::max(0.0, bounce.sunk))) +
+      half_a_step * gravity;
+  double taken = 0;
+  for (const double share : bounce.shares) taken += share;
+  if (taken <= 0 || bounce.target <= speed) return false;
+  for (double& share : bounce.shares) share *= (bounce.target - speed) / taken;
+  return bounce.is_leaving = true;
+}
+
+// Pushes the two apart by an impulse on the body, and the opposite one on the other side [N s].
+void Restitution::push(std::size_t owner, const Bounce& bounce, const Vec3& impulse) {
+  RigidMotion& own = after_[owner];
+  own = own.pushed(impulse, own.center + bounce.arm);
+  if (bounce.body < 0) return;
+  RigidMotion& other = after_[bounce.body];
+  other = other.pushed(-impulse, other.center + bounce.other_arm);
+}
+
+// Returns the mass that an impulse between the two has to move along a direction of length 1 [kg].
+double Restitution::mass_between(std::size_t owner, const Bounce& bounce, const Vec3& direction) const {
+  const RigidMotion& own = after_[owner];
+  Vec3 change = own.change_at(own.center + bounce.arm, direction);
+  if (bounce.body >= 0) {
+    const RigidMotion& other = after_[bounce.body];
+    change += other.change_at(other.center + bounce.other_arm, direction);
+  }
+  return 1 / direction.dot(change);
+}
+
+// Gives what is due after this step.
+void Restitution::give(std::size_t owner, Bounce& bounce) {
+  const double due = bounce.shares.back(), given_already = std::min(bounce.ahead, due);
+  bounce.shares.pop_back();
+  bounce.ahead -= given_already;
+  const Vec3 velocity = velocity_between(owner, bounce, after_);
+  const double gift = std::min(due - given_already, bounce.target - bounce.normal.dot(velocity));
+  if (gift <= 0) return;
+  const double impulse = gift * mass_between(owner, bounce, bounce.normal);
+  push(owner, bounce, impulse * bounce.normal);
+  const Vec3 slip = velocity - velocity.dot(bounce.normal) * bounce.normal;
+  if (slip.norm() < 1e-6 * bounce.approach) return;
+  const Vec3 along = slip.normalized();
+  const double stopping = slip.norm() * mass_between(owner, bounce, along);
+  push(owner, bounce, -std::min(friction(owner, bounce) * impulse, stopping) * along);
+}
+
+// Begins the bounces of a body, and goes on with those that have begun.
+void Restitution::go_on(std::size_t owner, const std::vector<Touching>& touchings) {
+  const Model& model = bodies_[owner]->model();
+  std::vector<Bounce>& begun = bodies_[owner]->state_.bounces.begun;
+  for (const Touching& touching : touchings) {
+    auto bounce = std::ranges::find_if(begun, [&](const Bounce& one) { return touching.is_of(one); });
+    const bool is_new = bounce == begun.end();
+    if (is_new) bounce = begun.insert(bounce, {.collider = touching.collider, .body = touching.body});
+    bounce->normal = touching.push.normalized();
+    bounce->arm = touching.place - after_[owner].center;
+    if (touching.body >= 0) bounce->other_arm = touching.place - after_[touching.body].center;
+    if (!is_new) continue;
+    const double gravity = gravity_between(owner, *bounce), step = model.time_step;
+    const double speed = -bounce->normal.dot(velocity_between(owner, *bounce, before_));
+    constexpr double creeping = 0.01;  // of its size in a second: what rests, or is pressed to rest
+    if (speed <= 2 * step * scene_.gravity.norm() + creeping * model.size || coefficient(owner, *bounce) == 0) {
+      begun.erase(bounce);
+      continue;
+    }
+    const double at_start = speed + (model.scheme.theta == 1 ? 0.5 * step * gravity : 0);
+    const double fallen = std::max(0.0, -bounce->normal.dot(touching.way));
+    bounce->approach = std::hypot(at_start, std::sqrt(2 * gravity * fallen));
+    bounce->sunk = -fallen;
+  }
+  std::erase_if(begun, [&](Bounce& bounce) {
+    const bool touches = std::ranges::any_of(touchings, [&](const Touching& t) { return t.is_of(bounce); });
+    const double was = bounce.normal.dot(velocity_between(owner, bounce, before_));
+    const double is = bounce.normal.dot(velocity_between(owner, bounce, after_));
+    if (bounce.is_leaving) {
+      if (touches) bounce.ahead += std::max(0.0, is - was);
+    } else if (!touches || !approach(owner, bounce, is - was, is)) {
+      return true;
+    }
+    return false;
+  });
+}
+
+// Sets a body's velocities after its gifts. stepped: how it moved after the step.
+void Restitution::set_velocities(std::size_t body, const RigidMotion& stepped) {
+  RigidMotion change = after_[body];
+  change.linear -= stepped.linear;
+  change.angular -= stepped.angular;
+  if (change.linear.isZero(0) && change.angular.isZero(0)) return;
+  const Model& model = bodies_[body]->model();
+  State& state = bodies_[body]->state_;
+  for (int i = 0; i < model.free; ++i) {
+    const Vec3 added = change.at(state.x.row(i).transpose()), before = state.v.row(i);
+    state.bounces.given += model.mass[i] * added.dot(before + 0.5 * added);
+    state.v.row(i) += added.transpose();
+  }
+}
+
+void Restitution::after_step(const std::vector<std::size_t>& island, const std::vector<BodyTouch>& touches) {
+  if (!may_bounce(island)) return;
+  const Zone zone("restitution");
+  std::vector<RigidMotion> stepped;
+  for (const std::size_t b : island) {
+    after_[b] = rigid_motion(bodies_[b]->model(), bodies_[b]->state_.x, bodies_[b]->state_.v);
+    stepped.push_back(after_[b]);
+  }
+  for (const std::size_t b : island) go_on(b, touchings(b, touches));
+  for (const std::size_t b : island) {
+    std::vector<Bounce>& begun = bodies_[b]->state_.bounces.begun;
+    std::erase_if(begun, [&](Bounce& bounce) {
+      if (bounce.is_leaving) give(b, bounce);
+      return bounce.is_leaving && bounce.shares.empty();
+    });
+  }
+  for (std::size_t m = 0; m < island.size(); ++m) set_velocities(island[m], stepped[m]);
+}
+
+}  // namespace supple
