@@ -196,14 +196,14 @@ bool say_verdict(const FilmCommand& command, const StateVerifier& verifier, int 
 
 }  // namespace
 
-void add_film_options(Verb& verb, FilmCommand& command) {
+void add_film_options(Verb& verb, FilmCommand& command, const std::string& folder) {
   FilmPlan& plan = command.plan;
-  verb.option("--out", plan.out, "folder for the results [out/NAME]");
+  verb.option("--out", plan.out, "folder for the results [" + folder + "]");
   add_size_option(verb, plan.size, "the scene's");
   verb.option("--frames", plan.frames, "length of the film, over the scene's").between(1, 1000000);
-  const auto take_from = [&plan](const std::string& folder) {
-    if (folder.empty()) throw InputError("--from", "names no folder");  // as of a shell's variable that is not set
-    plan.from = folder;
+  const auto take_from = [&plan](const std::string& run) {
+    if (run.empty()) throw InputError("--from", "names no folder");  // as of a shell's variable that is not set
+    plan.from = run;
   };
   const Option from = verb.option("--from", take_from,
                                   "folder of an earlier run: bodies of the same name go on from where they were there");
@@ -310,7 +310,7 @@ void take_scene(FilmPlan& plan) {
 void add_film(Verb& verb, const FilmArgument& argument, const std::vector<std::string>& words) {
   auto command = std::make_shared<FilmCommand>();
   verb.option(argument.name, command->plan.scene, argument.meaning).required();
-  add_film_options(verb, *command);
+  add_film_options(verb, *command, "out/NAME");
   FilmPlan& plan = command->plan;
   plan.stills = true;
   plan.force = false;

@@ -21,7 +21,8 @@ struct FilmCommand {
 };
 
 // Adds the options that every run of a scene has. --resume is not among them, because it is for single films only.
-void add_film_options(Verb& verb, FilmCommand& command);
+// folder: where the results are without --out, in words.
+void add_film_options(Verb& verb, FilmCommand& command, const std::string& folder);
 
 // Adds the option that chooses how pictures are drawn, and the one that keeps nothing in the user's cache.
 void add_gl_option(Verb& verb, GlChoice& gl);

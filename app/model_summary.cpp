@@ -53,7 +53,7 @@ std::string surface_summary(const std::filesystem::path& file) {
   for (std::size_t p = 0; p < std::min(most, read.pieces.size()); ++p)
     text += piece_text(read.pieces[p], read.volumes[p], p + 1);
   if (read.pieces.size() > most) text += fmt::format("and {} smaller pieces\n", read.pieces.size() - most);
-  return text + "as supple render shows it, half a metre long and of jelly:\n";
+  return text + "as supple render shows it, half a metre long:\n";
 }
 
 }  // namespace supple

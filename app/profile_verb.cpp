@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "app/film_run.h"
@@ -15,6 +16,7 @@
 #include "base/timing.h"
 #include "film/plan/shipped_files.h"
 #include "output/files/child_program.h"
+#include "output/files/json_text.h"
 #include "output/files/whole_file.h"
 #include "output/pages/zone_table.h"
 #include "output/run/verdict.h"
@@ -155,6 +157,22 @@ struct Profiled {
   std::optional<ZoneProfile> all = {};  // of the repeats so far
 };
 
+// Returns the folder for the results: one of its own beside that of the scene's film, where no other is asked for.
+std::filesystem::path folder_for(const FilmPlan& plan) {
+  const SceneDef scene = Script::load(scene_file(plan.scene), assets_folder(), plan.settings).scene();
+  return plan.out.empty() ? std::filesystem::path("out") / (scene.name + "-profile") : std::filesystem::path(plan.out);
+}
+
+// A repeat replaces what is in its folder. An earlier profile is there to be replaced, and a film is not.
+void check_holds_no_film(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (!std::filesystem::exists(folder / "run.json", error)) return;
+  const auto info = json_object_in<nlohmann::json>(folder / "run.json");
+  const bool has_command = info.is_object() && info.contains("command") && info["command"].is_array();
+  if (has_command && info["command"].size() > 1 && info["command"][1] == "profile") return;
+  throw InputError("--out " + folder.string(), "holds a film, which a profile would remove; name another folder");
+}
+
 // Makes one more repeat. Returns the exit status.
 int add_repeat(const ProfileCommand& request, const std::vector<std::string>& command, int repeat, Profiled& profiled) {
   const Stopwatch watch;
@@ -188,12 +206,10 @@ std::vector<Profiled> programs_of(const ProfileCommand& request, const std::file
 // more than 10 %, in all of its frames. The repeats before one that fails or is interrupted are reported. Two programs
 // run in turn, so that the noise of a shared machine meets both alike, and are compared.
 int profile(const ProfileCommand& request, const std::vector<std::string>& command) {
-  const SceneDef scene =
-      Script::load(scene_file(request.film.plan.scene), assets_folder(), request.film.plan.settings).scene();
-  const std::filesystem::path folder = request.film.plan.out.empty() ? std::filesystem::path("out") / scene.name
-                                                                     : std::filesystem::path(request.film.plan.out);
+  const std::filesystem::path folder = request.film.plan.out;
   catch_interrupts();
   std::vector<Profiled> programs = programs_of(request, folder);
+  for (const Profiled& one : programs) check_holds_no_film(one.folder);
   int status = 0;
   for (int repeat = 0; repeat < request.repeats && status == 0; ++repeat) {
     for (Profiled& one : programs) {
@@ -216,11 +232,13 @@ int profile(const ProfileCommand& request, const std::vector<std::string>& comma
 }
 
 int run(const ProfileCommand& request, const std::vector<std::string>& command) {
-  if (request.compared.empty()) {
-    if (request.film.plan.scene.empty()) throw InputError("profile", "needs a SCENE, or --compare with two zones.json");
-    return request.repeats == 1 && request.against.empty() ? profile_once(request, command) : profile(request, command);
-  }
-  return compare(request);
+  if (!request.compared.empty()) return compare(request);
+  if (request.film.plan.scene.empty()) throw InputError("profile", "needs a SCENE, or --compare with two zones.json");
+  ProfileCommand placed = request;
+  placed.film.plan.out = folder_for(request.film.plan).string();
+  if (request.repeats > 1 || !request.against.empty()) return profile(placed, command);
+  check_holds_no_film(placed.film.plan.out);
+  return profile_once(placed, command);
 }
 
 // A comparison runs nothing, so the options of a run mean nothing with it.
@@ -248,7 +266,7 @@ void add_profile(CommandLine& line) {
   verb.option("--compare", request->compared, "two zones.json: what became slower or faster from A to B")
       .two_values("A B");
   verb.flag("--anyway", request->anyway, "compare profiles of different settings, and say how they differ");
-  add_film_options(verb, request->film);
+  add_film_options(verb, request->film, "out/NAME-profile");
   verb.option("--against", request->against,
               "another supple, such as one built before: both run in turn, and are compared (A is the other one)");
   verb.runs([request, verb, words = line.words()] {

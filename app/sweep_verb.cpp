@@ -108,7 +108,7 @@ void add_sweep(CommandLine& line) {
   auto options = std::make_shared<SweepOptions>();
   Verb verb = line.verb("sweep", "Run a scene with other values, point by point, and compare.");
   verb.footer(
-      "Example: supple sweep stiffness\n"
+      "Example: supple sweep pulled-bar\n"
       "         supple sweep squirrel --set 'sweep.values.solver.iterations=[5, 10, 20]' --frames 60\n"
       "Leaves points/NNNN/ (a run each), sweep.csv, times.csv, contact-sheet.png and index.html in out/NAME-sweep.");
   add_options(verb, *options);

@@ -74,6 +74,22 @@ TEST(Help, OfEveryVerbHasAnExampleOfIt) {
   }
 }
 
+// Examples are there to be typed: a word without an ending, after the verb, is a scene or a replay that ships.
+TEST(Help, HasExamplesOfWhatShips) {
+  const Program program;
+  const std::string shipped = "\n" + run(program.folder.path, {"list"}).out;
+  const std::regex example(R"((?:^|\n)(?:Examples?:)? +supple [a-z]+ ([a-z][a-z-]*)(?= |\n))");
+  int examples = 0;
+  for (const char* verb : {"render", "replay", "sweep", "profile", "info"}) {
+    const std::string text = program.help({verb});
+    for (std::sregex_iterator found(text.begin(), text.end(), example), end; found != end; ++found) {
+      EXPECT_NE(shipped.find("\n" + (*found)[1].str() + " "), std::string::npos) << found->str();
+      ++examples;
+    }
+  }
+  EXPECT_GE(examples, 6);
+}
+
 TEST(Help, NamesTheWordThatIsNoVerbAndTheNearestOne) {
   const Program program;
   const auto told = [&](const std::string& word) {

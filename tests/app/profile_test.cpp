@@ -44,7 +44,7 @@ TEST(Profile, OfASceneLeavesZonesTraceAndPlot) {
   ASSERT_EQ(result.status, 0) << result.err;
   for (const char* word : {"\n  frame ", "meanwhile, render", "Deadline 33.3 ms: of 8 frames", "build models"})
     EXPECT_NE(result.out.find(word), std::string::npos) << word << "\n" << result.out;
-  const std::filesystem::path out = folder.path / "out" / "bar";
+  const std::filesystem::path out = folder.path / "out" / "bar-profile";
   const ZoneProfile profile = read_zones(out / "zones.json");
   EXPECT_EQ(profile.repeats, 2);
   EXPECT_EQ(profile.run.frames, 5);
@@ -76,6 +76,30 @@ TEST(Profile, OfASceneLeavesZonesTraceAndPlot) {
   EXPECT_FALSE(std::filesystem::exists(out / "video.mp4"));
 }
 
+TEST(Profile, RemovesNoFilm) {
+  const test::TemporaryFolder folder;
+  write_scene(folder.path / "bar.toml");
+  const auto profile = [&](const std::string& repeats, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"profile", "bar.toml", "--no-images", "--quiet", "--repeats", repeats};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(folder.path, arguments);
+  };
+  ASSERT_EQ(run(folder.path, {"render", "bar.toml", "--quiet"}).status, 0);
+  const std::filesystem::path film = folder.path / "out" / "bar";
+  const std::string before = test::read_file(film / "run.json");
+  for (const char* repeats : {"1", "2"}) {
+    EXPECT_EQ(profile(repeats, {}).status, 0) << "into a folder of its own, and once more there";
+    const Result refused = profile(repeats, {"--out", "out/bar"});
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_EQ(refused.err, "--out out/bar: holds a film, which a profile would remove; name another folder\n");
+  }
+  EXPECT_EQ(read_zones(folder.path / "out" / "bar-profile" / "zones.json").repeats, 2);
+  EXPECT_EQ(test::read_file(film / "run.json"), before);
+  EXPECT_TRUE(std::filesystem::exists(film / "frames" / "000004.png"));
+  std::filesystem::rename(film, folder.path / "own-against");
+  EXPECT_EQ(profile("4", {"--out", "own", "--against", test::program_name}).status, 2) << "the other program's folder";
+}
+
 TEST(Profile, TracesOnlyWhenAskedAndChangesNoResult) {
   const test::TemporaryFolder folder;
   write_scene(folder.path / "bar.toml");
@@ -98,7 +122,7 @@ TEST(Profile, TracesOnlyWhenAskedAndChangesNoResult) {
 TEST(Profile, SaysWhichRepeatDiedAndReportsThoseThatAreWhole) {
   const test::TemporaryFolder folder;
   write_scene(folder.path / "bar.toml");
-  const std::filesystem::path out = folder.path / "out" / "bar";
+  const std::filesystem::path out = folder.path / "out" / "bar-profile";
   const std::vector<std::string> command = {"profile", "bar.toml", "--no-images", "--repeats", "200"};
   const Result interrupted = run(folder.path, command, out / "zones.json");
   EXPECT_EQ(interrupted.status, 130) << interrupted.err;
@@ -116,7 +140,7 @@ TEST(Profile, SaysWhichRepeatDiedAndReportsThoseThatAreWhole) {
   setrlimit(RLIMIT_FSIZE, &usual);
   EXPECT_EQ(died.status, 1);
   EXPECT_TRUE(died.err.ends_with(
-      fmt::format("supple: repeat 1 of 2 was ended by signal {}; what it left is in out/bar\n", SIGXFSZ)))
+      fmt::format("supple: repeat 1 of 2 was ended by signal {}; what it left is in out/bar-profile\n", SIGXFSZ)))
       << died.err;
 }
 
