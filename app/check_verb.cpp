@@ -40,7 +40,7 @@ struct Checked {
 };
 
 Checked read_all(const CheckCommand& command) {
-  const SceneSource source = opened_scene(command.scene, command.json);
+  const SceneSource source = opened_scene(command.scene, command.settings, command.json);
   std::vector<std::string> settings = command.settings;
   Checked checked{load_script(source, settings), {}, {}, {}};
   const SceneDef& scene = checked.script.scene();

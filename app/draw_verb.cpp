@@ -23,6 +23,7 @@
 #include "film/progress.h"
 #include "film/redraw/redraw.h"
 #include "film/redraw/skin_files.h"
+#include "output/files/folder_lock.h"
 #include "output/files/png_file.h"
 #include "output/files/whole_file.h"
 #include "output/run/run_folder.h"
@@ -207,7 +208,10 @@ int draw_one(const DrawCommand& command, LoadedDrawing& drawing) {
 int write_skin_files(const DrawCommand& command, LoadedDrawing& drawing) {
   if (command.frame || !command.still.empty() || command.index || command.merge || command.jobs > 1)
     throw InputError("--skins", "writes all chosen frames (--first, --last, --every) at once, not one frame or parts");
+  if (command.sheet || !command.field.empty())
+    throw InputError("--skins", "writes shapes, and not pictures: leave out --sheet and --field");
   const auto count = static_cast<int>(drawing.frames.size());
+  const FolderLock lock(command.folder());
   open_skins(command.folder(), drawing);
   catch_interrupts();
   Progress progress(count, 0, command.quiet);
@@ -299,7 +303,10 @@ int draw(DrawCommand command) {
   if (command.skins) return write_skin_files(command, drawing);
   if (command.frame || !command.still.empty()) return draw_one(command, drawing);
   coding_of(command, drawing);  // is refused before the folder is changed
-  open_drawing(command.folder(), drawing, command.index || command.merge);
+  const bool is_part = command.index || command.merge;
+  FolderLock lock(command.folder(), is_part ? FolderUse::with_others : FolderUse::alone);
+  open_drawing(command.folder(), drawing, is_part);
+  if (command.jobs > 1) lock.share();
   catch_interrupts();
   if (command.merge) return merge_parts(command, drawing);
   if (command.index)

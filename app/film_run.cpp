@@ -290,18 +290,18 @@ void ask_for_passes(const std::vector<std::string>& passes, std::vector<std::str
     settings.insert(settings.begin(), fmt::format("output.passes=[\"{}\"]", fmt::join(passes, "\", \"")));
 }
 
-SceneSource opened_scene(const std::string& name, bool quiet) {
+SceneSource opened_scene(const std::string& name, const std::vector<std::string>& settings, bool quiet) {
   SceneSource source = scene_source(name);
   if (source.text || !is_model(source.path)) return source;
-  ModelScene scene = model_scene(source.path);
-  for (const std::string& note : scene.notes)
+  ModelScene scene = model_scene(source.path, wish_of(settings));
+  for (const std::string& note : scene.notes_with(settings))
     if (!quiet) say(stderr, fmt::format("note: {}: {}\n", source.path.string(), note));
   source.text = std::move(scene.text);
   return source;
 }
 
 void take_scene(FilmPlan& plan) {
-  SceneSource source = opened_scene(plan.scene, plan.quiet);
+  SceneSource source = opened_scene(plan.scene, plan.settings, plan.quiet);
   if (!source.text) return;
   plan.scene = source.path.string();
   plan.scene_text = std::move(source.text);

@@ -45,8 +45,8 @@ void go_on(const FilmPlan& plan, LoadedFilm& film);
 void say_remarks(const FilmPlan& plan, const LoadedFilm& film);
 
 // Opens a scene by the name that the command line gives. The text of one that is not in a file is read, or made of a
-// model, whose notes are printed unless this should be quiet. Throws InputError.
-SceneSource opened_scene(const std::string& name, bool quiet);
+// model, whose notes are printed unless this should be quiet, or the settings make them untrue. Throws InputError.
+SceneSource opened_scene(const std::string& name, const std::vector<std::string>& settings, bool quiet);
 
 // Gives the plan the text of a scene that is not in a file. Throws InputError.
 void take_scene(FilmPlan& plan);

@@ -12,6 +12,7 @@
 #include "base/timing.h"
 #include "film/plan/shipped_files.h"
 #include "film/progress.h"
+#include "output/files/folder_lock.h"
 #include "output/files/json_text.h"
 #include "output/files/png_file.h"
 #include "output/run/run_folder.h"
@@ -130,6 +131,7 @@ void open_split(const SplitCommand& command) {
 
 int draw_split(const SplitCommand& asked) {
   const Stopwatch watch;
+  const FolderLock lock(asked.folder);
   open_split(asked);
   catch_interrupts();
   const SplitCommand command = with_one_range(asked);

@@ -127,6 +127,21 @@ TEST_F(DefaultFilm, StandsATallModelUpAndSaysSo) {
   EXPECT_LT(height[1], 0.495);
 }
 
+TEST_F(DefaultFilm, IsAsStiffAsItsSizeAndItsAxisAskFor) {
+  film("table.obj", thin_table(), {"--size", "192x108", "--frames", "1"});
+  const auto young = [&] {
+    const std::size_t at = result_.err.find("young = ");
+    return at == std::string::npos ? 0.0 : std::stod(result_.err.substr(at + 8));
+  };
+  const double usual = young();
+  film("table.obj", thin_table(), {"--size", "192x108", "--frames", "1", "--set", "body.model.size=2"});
+  EXPECT_NE(result_.err.find("it is made 2 m long, and falls"), std::string::npos) << result_.err;
+  EXPECT_GT(young(), 2.5 * usual) << "stresses of weight grow with the size, and the trials go in steps";
+  EXPECT_LT(young(), 6 * usual);
+  film("table.obj", thin_table(), {"--size", "192x108", "--frames", "1", "--set", "body.model.up=-y"});
+  EXPECT_LT(young(), 0.5 * usual) << "it lies on its top, with its legs in the air";
+}
+
 TEST_F(DefaultFilm, IsFramedForEachShapeOfThePicture) {
   for (const char* size : {"108x192", "128x128"}) {
     film("table.obj", thin_table(), {"--size", size});

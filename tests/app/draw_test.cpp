@@ -6,6 +6,7 @@
 #include <future>
 #include <nlohmann/json.hpp>
 
+#include "output/files/folder_lock.h"
 #include "output/files/png_file.h"
 #include "output/run/run_folder.h"
 #include "output/video/video.h"
@@ -449,6 +450,24 @@ TEST_F(DrawnRun, TakesAnotherCameraFromACopyOfTheReplay) {
   ASSERT_EQ(draw("wider", {"--scene", "wider.toml"}).status, 0);
   EXPECT_EQ(picture("wider", 0), picture("run", 0));
   EXPECT_NE(picture("wider", 11), picture("run", 11));
+}
+
+TEST_F(DrawnRun, IsNotDisturbedByAnotherDrawingIntoItsFolder) {
+  ASSERT_EQ(draw("busy", {"--index", "0", "--of", "2"}).status, 0);
+  const auto refused = [](const Result& result) {
+    return result.status == 2 && result.err.find("another run writes into this folder now") != std::string::npos;
+  };
+  FolderLock other(path("busy"));  // as a drawing of the whole film holds it
+  for (const std::vector<std::string>& how :
+       std::vector<std::vector<std::string>>{{}, {"--jobs", "2"}, {"--index", "1", "--of", "2"}, {"--merge"}})
+    EXPECT_TRUE(refused(draw("busy", how)));
+  EXPECT_TRUE(refused(run(folder_->path, {"draw", "run", "run", "--out", "busy", "--quiet"})));
+  other.share();  // as one that draws a part
+  EXPECT_TRUE(refused(draw("busy")));
+  EXPECT_EQ(pictures("busy"), frames / 2);
+  EXPECT_EQ(draw("busy", {"--index", "1", "--of", "2"}).status, 0);
+  EXPECT_EQ(draw("busy", {"--merge"}).status, 0);
+  EXPECT_EQ(pictures("busy"), frames);
 }
 
 TEST_F(DrawnRun, KeepsOtherFoldersAsTheyAre) {

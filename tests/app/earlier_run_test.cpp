@@ -134,10 +134,11 @@ shape = { half_space = { normal = [0, 1, 0] } }
   ASSERT_EQ(run(folder(), {"render", "bounce.toml", "--out", "bounce", "--frames", "20", "--no-images"}).status, 0);
   const nlohmann::json then = profile_of(path("bounce"))["frames"];
   for (const int frame : {3, 6}) {
-    const Result later = run(folder(), {"render", "bounce.toml", "--out", "rest", "--from", "bounce", "--frame",
-                                        number(frame), "--frames", number(19 - frame), "--no-images", "--force"});
+    const Result later =
+        run(folder(), {"render", "bounce.toml", "--out", "rest-of-bounce", "--from", "bounce", "--frame", number(frame),
+                       "--frames", number(19 - frame), "--no-images", "--force"});
     ASSERT_EQ(later.status, 0) << later.err;
-    EXPECT_EQ(profile_of(path("rest"))["frames"].back()["state_hash"], then[19]["state_hash"]) << frame;
+    EXPECT_EQ(profile_of(path("rest-of-bounce"))["frames"].back()["state_hash"], then[19]["state_hash"]) << frame;
   }
 }
 

@@ -317,6 +317,9 @@ TEST(Skins, LeaveOtherFoldersAlone) {
   const Result one = run(folder.path, {"draw", film.string(), "--skins", "--frame", "0"});
   EXPECT_EQ(one.status, 2);
   EXPECT_NE(one.err.find("--skins: writes all chosen frames"), std::string::npos) << one.err;
+  const Result field = run(folder.path, {"draw", film.string(), "--skins", "--field", "stretch"});
+  EXPECT_EQ(field.status, 2);
+  EXPECT_NE(field.err.find("--skins: writes shapes, and not pictures"), std::string::npos) << field.err;
   for (int again = 0; again < 2; ++again)
     EXPECT_EQ(run(folder.path, {"draw", film.string(), "--skins", "--quiet", "--out", "s"}).status, 0);
 }

@@ -1,6 +1,5 @@
 // Tests what is chosen for a model that is filmed without a scene: which way it stands, and how stiff it is.
 #include "scene/reading/model_scene.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -78,6 +77,25 @@ TEST(Upright, IsTheAxisOnWhichItStandsWhereItWouldToppleOnTheUsualOne) {
   EXPECT_EQ(guess_upright("a.ply", wobbly).up, UpAxis::z);
 }
 
+TEST(ModelScene, TellsNothingThatSettingsMakeUntrue) {
+  const ModelScene scene{
+      "", {{"long", {"body.model.size"}}, {"soft", {"body.model.material"}}, {"held", {"body.model.handles"}}}};
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(scene.notes_with({}), (Lines{"long", "soft", "held"}));
+  EXPECT_EQ(scene.notes_with({"look.labels=true"}), (Lines{"long", "soft", "held"}));
+  EXPECT_EQ(scene.notes_with({"body.model.size=2"}), (Lines{"soft", "held"}));
+  EXPECT_EQ(scene.notes_with({"body.model.material.young=1e5", "body.model.handles=[]"}), (Lines{"long"}));
+}
+
+TEST(ModelScene, TakesItsSizeAndAxisFromSettings) {
+  const ModelWish none = wish_of({"look.labels=true", "body.model.size=big", "body.model.up=w", "body.model.size=-1"});
+  EXPECT_FALSE(none.up);
+  EXPECT_EQ(none.size, 0.5);
+  const ModelWish wish = wish_of({"body.model.size = 2", "body.model.size=1.5", "body.model.up=\"-y\""});
+  EXPECT_EQ(wish.up, UpAxis::minus_y);
+  EXPECT_EQ(wish.size, 1.5);
+}
+
 TEST(Sagging, OfAColumnIsThatOfItsWeight) {
   const TetMesh column = box_mesh({0.2, 0.5, 0.2}, {4, 10, 4});
   const Sagging wanted{1000, 0.3, 0.05, 0.03};
@@ -89,18 +107,34 @@ TEST(Sagging, OfAColumnIsThatOfItsWeight) {
   EXPECT_NEAR(young_for_sag(column, heavy), 3 * young, 0.5 * young);
 }
 
-TEST(Sagging, KeepsThinLegsFromBuckling) {
-  // A block on a thin stem: pressed by 5 % alone, the stem would buckle.
+// A block on a thin stem. aside: of the stem from the block's middle, along x [m].
+TetMesh lamp_on_stem(double aside) {
   TetMesh lamp = box_mesh({0.3, 0.5, 0.3}, {6, 10, 6});
   for (Eigen::Index v = 0; v < lamp.rest.rows(); ++v) {
     if (lamp.rest(v, 1) > 0.36) continue;
     for (const int k : {0, 2}) lamp.rest(v, k) = 0.15 + 0.15 * (lamp.rest(v, k) - 0.15);
+    lamp.rest(v, 0) += aside;
   }
+  return lamp;
+}
+
+TEST(Sagging, KeepsThinLegsFromBuckling) {
+  const TetMesh lamp = lamp_on_stem(0);  // pressed by 5 % alone, the stem would buckle
   const Sagging wanted{1000, 0.4, 0.05, 0.03};
   const double young = young_for_sag(lamp, wanted);
   EXPECT_LT(sag_of(lamp, wanted, young), 0.08);
   EXPECT_GT(sag_of(lamp, wanted, young), 0.02);
   EXPECT_GT(young, 5 * 1000 * 9.81 * 0.5 / (2 * 0.05)) << "the stem carries more than a column does";
+}
+
+TEST(Sagging, DoesNotDependOnTheWayInWhichABodyLeans) {
+  const TetMesh lamp = lamp_on_stem(0.02);
+  TetMesh turned = lamp;  // by half a turn about y
+  for (const int k : {0, 2}) turned.rest.col(k) *= -1;
+  const Sagging wanted{1000, 0.4, 0.05, 0.03};
+  const double young = young_for_sag(lamp, wanted), other = young_for_sag(turned, wanted);
+  EXPECT_NEAR(other, young, 0.01 * young);
+  EXPECT_NEAR(young_for_fall(turned, wanted, other, 0.05), young_for_fall(lamp, wanted, young, 0.05), 0.01 * young);
 }
 
 }  // namespace model_scene_test

@@ -34,15 +34,20 @@ void check_left_by(const std::filesystem::path& folder, const std::string& maker
                      fmt::format("holds files that no {} left there (no {}); choose another folder", maker, mark));
 }
 
-FolderLock::FolderLock(const std::filesystem::path& folder) {
+FolderLock::FolderLock(const std::filesystem::path& folder, FolderUse use) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   // Children do not inherit the descriptor (O_CLOEXEC), because they may live longer.
   folder_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder_ < 0 || ::flock(folder_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  const int kind = use == FolderUse::alone ? LOCK_EX : LOCK_SH;
+  if (folder_ < 0 || ::flock(folder_, kind | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   ::close(folder_);
   throw InputError("--out " + folder.string(),
                    "another run writes into this folder now; wait until it has ended, or choose another folder");
+}
+
+void FolderLock::share() {
+  if (folder_ >= 0) ::flock(folder_, LOCK_SH | LOCK_NB);
 }
 
 FolderLock::~FolderLock() {

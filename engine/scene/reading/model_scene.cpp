@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 
 #include "base/read_file.h"
@@ -37,7 +38,6 @@ std::string quoted(const std::string& name) {
   return text + "\"";
 }
 
-constexpr double model_side = 0.5;  // the model_side [m]
 constexpr double model_density = 1000, model_poisson = 0.4;
 constexpr double wanted_sag = 0.05;  // over the height
 constexpr double fall = 0.1;         // over the model's height
@@ -62,16 +62,20 @@ Positions turned_up(const Positions& points, UpAxis up) {
   return set_up({points, {}}, options).points;
 }
 
-StandingModel standing_surface(const std::filesystem::path& file) {
+Upright upright_of(const ModelWish& wish, const std::filesystem::path& file, const TriMesh& surface) {
+  return wish.up ? Upright{*wish.up, ""} : guess_upright(file, surface);
+}
+
+StandingModel standing_surface(const std::filesystem::path& file, const ModelWish& wish) {
   BodyDef def;
   def.surface = file;
   BodySurface read = read_body_surface(def);
-  StandingModel model{{}, 0, 0, guess_upright(file, read.pieces.front().boundary), 0};
+  StandingModel model{{}, 0, 0, upright_of(wish, file, read.pieces.front().boundary), 0};
   if (model.upright.up != UpAxis::y) {
     def.surface_options.up = model.upright.up;
     read = read_body_surface(def);
   }
-  const double scale = model_side / read.box.extent().maxCoeff();
+  const double scale = wish.size / read.box.extent().maxCoeff();
   model.height = scale * read.box.extent().y();
   model.sole = steady_sole(read.pieces.front().boundary);
   const auto mesh_of = [&](int vertices) {
@@ -92,14 +96,14 @@ StandingModel standing_surface(const std::filesystem::path& file) {
   return model;
 }
 
-StandingModel standing_mesh(const std::filesystem::path& file) {
+StandingModel standing_mesh(const std::filesystem::path& file, const ModelWish& wish) {
   StandingModel model{read_mesh(file).mesh, 0, 0, {}, 0};
   const TriMesh boundary{model.mesh.rest, boundary_faces(model.mesh.tets)};
   model.upright = guess_upright(file, boundary);
   model.mesh.rest = turned_up(model.mesh.rest, model.upright.up);
   const Vec3 extent = bounds_of(model.mesh.rest).extent();
-  model.mesh.rest *= model_side / extent.maxCoeff();
-  model.height = model_side / extent.maxCoeff() * extent.y();
+  model.mesh.rest *= wish.size / extent.maxCoeff();
+  model.height = wish.size / extent.maxCoeff() * extent.y();
   model.sole = steady_sole({model.mesh.rest, boundary.triangles});
   model.young =
       young_for_fall(model.mesh, model.sagging(), young_for_sag(model.mesh, model.sagging()), fall * model.height);
@@ -138,10 +142,47 @@ bool is_model(const std::filesystem::path& path) {
          std::find(surface_endings.begin(), surface_endings.end(), ending) != surface_endings.end();
 }
 
-ModelScene model_scene(const std::filesystem::path& model) {
+std::vector<std::string> ModelScene::notes_with(const std::vector<std::string>& settings) const {
+  // Tells whether a setting gives a value of a table or of a key in it.
+  const auto replaces = [](const std::string& setting, const std::string& key) {
+    const std::string path = setting.substr(0, setting.find('='));
+    return path == key || path.starts_with(key + ".") || key.starts_with(path + ".");
+  };
+  std::vector<std::string> lines;
+  for (const Note& note : notes) {
+    const bool is_replaced = std::ranges::any_of(settings, [&](const std::string& setting) {
+      return std::ranges::any_of(note.about, [&](const std::string& key) { return replaces(setting, key); });
+    });
+    if (!is_replaced) lines.push_back(note.text);
+  }
+  return lines;
+}
+
+ModelWish wish_of(const std::vector<std::string>& settings) {
+  ModelWish wish;
+  const auto value_of = [](const std::string& setting, std::string_view key) -> std::optional<std::string> {
+    if (!setting.starts_with(key)) return std::nullopt;
+    std::string value = setting.substr(key.size());
+    std::erase_if(value, [](char c) { return c == '"' || c == ' '; });
+    return value;
+  };
+  for (const std::string& setting : settings) {
+    if (const auto up = value_of(setting, "body.model.up=")) {
+      if (const auto axis = value_named<UpAxis>(*up)) wish.up = *axis;
+    }
+    if (const auto size = value_of(setting, "body.model.size=")) {
+      double number = 0;
+      const auto [end, error] = std::from_chars(size->data(), size->data() + size->size(), number);
+      if (error == std::errc() && end == size->data() + size->size() && number > 0) wish.size = number;
+    }
+  }
+  return wish;
+}
+
+ModelScene model_scene(const std::filesystem::path& model, const ModelWish& wish) {
   check_regular_file(model);
   const bool is_mesh = is_mesh_file(model);
-  const StandingModel standing = is_mesh ? standing_mesh(model) : standing_surface(model);
+  const StandingModel standing = is_mesh ? standing_mesh(model, wish) : standing_surface(model, wish);
   const double young = rounded(standing.young);
   const double above = rounded(fall * standing.height);
   const std::string file = quoted(model.filename().string());
@@ -153,20 +194,24 @@ ModelScene model_scene(const std::filesystem::path& model) {
       "select = {{ box = [[0, 0, 0], [1, {:g}, 1]] }}\nease = \"linear\"\nkeys = [{}]\n"
       "[[collider]]\nname = \"ground\"\nshape = {{ half_space = {{ normal = [0, 1, 0] }} }}\nfriction = 0.8\n"
       "[camera]\nframes = \"film\"\n[look]\nlabels = false\nsupports = false\n",
-      file, frames_a_second, is_mesh ? "mesh" : "surface", file, turning_keys(standing.upright.up, is_mesh), model_side,
+      file, frames_a_second, is_mesh ? "mesh" : "surface", file, turning_keys(standing.upright.up, is_mesh), wish.size,
       above, young, model_poisson, model_density, standing.sole, falling_keys(above));
-  if (!standing.upright.reason.empty())
+  if (!standing.upright.reason.empty()) {
     scene.notes.push_back(
-        fmt::format("its {} axis is taken to point up, because {}; --set body.model.{} says otherwise",
-                    name_of(standing.upright.up), standing.upright.reason, is_mesh ? "turn_deg" : "up"));
+        {fmt::format("its {} axis is taken to point up, because {}; --set body.model.{} says otherwise",
+                     name_of(standing.upright.up), standing.upright.reason, is_mesh ? "turn_deg" : "up"),
+         {"body.model.turn_deg"}});
+  }
   scene.notes.push_back(
-      fmt::format("it is made half a metre long, falls {:g} m, and sags by at most some 5 % of its height with young = "
-                  "{:g} Pa; --set "
-                  "body.model.material.young softens or stiffens it",
-                  above, young));
-  scene.notes.push_back(fmt::format(
-      "its lowest {:g} % stay where they land, so that it stands; --set body.model.handles=[] lets it topple",
-      100 * standing.sole));
+      {fmt::format("it is made {:g} m long, and falls {:g} m", wish.size, above), {"body.model.position"}});
+  scene.notes.push_back({fmt::format("it sags by at most some 5 % of its height with young = {:g} Pa; --set "
+                                     "body.model.material.young softens or stiffens it",
+                                     young),
+                         {"body.model.material", "body.model.turn_deg"}});
+  scene.notes.push_back({fmt::format("its lowest {:g} % stay where they land, so that it stands; --set "
+                                     "body.model.handles=[] lets it topple",
+                                     100 * standing.sole),
+                         {"body.model.handles"}});
   return scene;
 }
 
