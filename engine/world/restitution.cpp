@@ -112,13 +112,13 @@ bool Restitution::approach(std::size_t owner, Bounce& bounce, double gained, dou
   bounce.shares.push_back(std::max(0.0, gained));
   bounce.sunk += model.time_step * std::max(0.0, -speed);
   if (speed < -stopped * bounce.approach) return true;
-  // What gravity gave since they touched it takes again while they leave. The velocity of a step of backward Euler is
-  // that in the middle of it, half a step of falling behind its start.
-  const double gravity = gravity_between(owner, bounce);
+  // What gravity gave since they touched counts as approach. The velocity of a step of backward Euler is that in the
+  // middle of it, half a step of falling behind its start.
+  const double gravity = gravity_between(owner, bounce), kept = coefficient(owner, bounce);
   const double half_a_step = model.scheme.theta == 1 ? 0.5 * model.time_step : 0;
+  if (kept == 0) return false;
   bounce.target =
-      std::hypot(coefficient(owner, bounce) * bounce.approach, std::sqrt(2 * gravity * std::max(0.0, bounce.sunk))) +
-      half_a_step * gravity;
+      kept * std::hypot(bounce.approach, std::sqrt(2 * gravity * std::max(0.0, bounce.sunk))) + half_a_step * gravity;
   double taken = 0;
   for (const double share : bounce.shares) taken += share;
   if (taken <= 0 || bounce.target <= speed) return false;
@@ -163,8 +163,10 @@ void Restitution::give(std::size_t owner, Bounce& bounce) {
   push(owner, bounce, -std::min(friction(owner, bounce) * impulse, stopping) * along);
 }
 
-// Begins the bounces of a body, and goes on with those that have begun.
-void Restitution::go_on(std::size_t owner, const std::vector<Touching>& touchings) {
+// Begins the bounces of a body, and goes on with those that have begun. One off a body that is too far away for a
+// common step is over.
+void Restitution::go_on(std::size_t owner, const std::vector<std::size_t>& island,
+                        const std::vector<Touching>& touchings) {
   const Model& model = bodies_[owner]->model();
   std::vector<Bounce>& begun = bodies_[owner]->state_.bounces.begun;
   for (const Touching& touching : touchings) {
@@ -188,6 +190,7 @@ void Restitution::go_on(std::size_t owner, const std::vector<Touching>& touching
     bounce->sunk = -fallen;
   }
   std::erase_if(begun, [&](Bounce& bounce) {
+    if (bounce.body >= 0 && std::ranges::find(island, std::size_t(bounce.body)) == island.end()) return true;
     const bool touches = std::ranges::any_of(touchings, [&](const Touching& t) { return t.is_of(bounce); });
     const double was = bounce.normal.dot(velocity_between(owner, bounce, before_));
     const double is = bounce.normal.dot(velocity_between(owner, bounce, after_));
@@ -223,7 +226,7 @@ void Restitution::after_step(const std::vector<std::size_t>& island, const std::
     after_[b] = rigid_motion(bodies_[b]->model(), bodies_[b]->state_.x, bodies_[b]->state_.v);
     stepped.push_back(after_[b]);
   }
-  for (const std::size_t b : island) go_on(b, touchings(b, touches));
+  for (const std::size_t b : island) go_on(b, island, touchings(b, touches));
   for (const std::size_t b : island) {
     std::vector<Bounce>& begun = bodies_[b]->state_.bounces.begun;
     std::erase_if(begun, [&](Bounce& bounce) {

@@ -47,7 +47,7 @@ class Restitution {
   Vec3 velocity_between(std::size_t owner, const Bounce& bounce, const Motions& motions) const;
 
   std::vector<Touching> touchings(std::size_t owner, const std::vector<BodyTouch>& touches) const;
-  void go_on(std::size_t owner, const std::vector<Touching>& touchings);
+  void go_on(std::size_t owner, const std::vector<std::size_t>& island, const std::vector<Touching>& touchings);
   bool approach(std::size_t owner, Bounce& bounce, double gained, double speed) const;
   double mass_between(std::size_t owner, const Bounce& bounce, const Vec3& direction) const;
   void give(std::size_t owner, Bounce& bounce);

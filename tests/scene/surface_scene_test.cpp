@@ -172,7 +172,7 @@ TEST_F(SurfaceScene, BadValuesAndKeysWithoutASurfaceAreRefused) {
   EXPECT_EQ(refusal_of(box + "close = \"always\"\n"), "close = 'always': must be auto, caps, winding or never");
   EXPECT_EQ(refusal_of(box + "pieces = \"all\"\n"), "pieces = 'all': must be join, largest or bodies");
   EXPECT_EQ(refusal_of(box + "thicken = -1\n"), "thicken = -1: must be above 0 to 1e+06");
-  EXPECT_EQ(refusal_of(box + "up = \"w\"\n"), "up = 'w': must be x, y or z; did you mean 'x'?");
+  EXPECT_EQ(refusal_of(box + "up = \"w\"\n"), "up = 'w': must be x, y, z, -x, -y or -z; did you mean 'x'?");
   EXPECT_EQ(refusal_of(box + "units = \"mile\"\n"), "units = 'mile': must be m, cm, mm, km, in or ft");
   for (const char* key : {"close = \"auto\"", "pieces = \"join\"", "thicken = 0.1", "up = \"z\"", "units = \"mm\""}) {
     const std::string name = std::string(key).substr(0, std::string(key).find(' '));
