@@ -1,6 +1,7 @@
 #include "world/restitution.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/trace.h"
@@ -17,6 +18,8 @@ struct Restitution::Touching {
   double pressing = 0;        // sum of the sizes of the forces [N]
   Vec3 place = Vec3::Zero();  // the mean of where they press, by force [m]
   Vec3 way = Vec3::Zero();    // the mean way in the step of what touches, against the collider [m]
+  // Those that touch a collider and are furthest along x, y, z, -x, -y, -z [m].
+  std::array<Vec3, 6> corners = {};
 
   bool is_of(const Bounce& bounce) const { return collider == bounce.collider && body == bounce.body; }
 };
@@ -81,6 +84,11 @@ std::vector<Restitution::Touching> Restitution::touchings(std::size_t owner,
     auto at = std::ranges::find(result, contact.other.collider, &Touching::collider);
     if (at == result.end()) at = result.insert(at, {.collider = contact.other.collider});
     const Vec3 place = contact.stencil.at(x), carried = carried_by(body.inputs(), at->collider, place) - place;
+    for (int k = 0; k < 6; ++k) {
+      const double sign = k < 3 ? 1 : -1;
+      Vec3& corner = at->corners[std::size_t(k)];
+      if (at->pressing == 0 || sign * place[k % 3] > sign * corner[k % 3]) corner = place;
+    }
     at->push += pressing * contact.normal;
     at->pressing += pressing;
     at->place += pressing * place;
@@ -126,41 +134,118 @@ bool Restitution::approach(std::size_t owner, Bounce& bounce, double gained, dou
   return bounce.is_leaving = true;
 }
 
-// Pushes the two apart by an impulse on the body, and the opposite one on the other side [N s].
-void Restitution::push(std::size_t owner, const Bounce& bounce, const Vec3& impulse) {
-  RigidMotion& own = after_[owner];
-  own = own.pushed(impulse, own.center + bounce.arm);
-  if (bounce.body < 0) return;
-  RigidMotion& other = after_[bounce.body];
-  other = other.pushed(-impulse, other.center + bounce.other_arm);
-}
+// Describes an impulse between two that touch, and how it changes their motions.
+struct Restitution::Push {
+  std::size_t owner;
+  Bounce at;           // of which the sides, the normal and the arms are read
+  double goal;         // the least speed with which the two shall go apart [m/s]
+  double impulse = 0;  // so far [N s]
 
-// Returns the mass that an impulse between the two has to move along a direction of length 1 [kg].
-double Restitution::mass_between(std::size_t owner, const Bounce& bounce, const Vec3& direction) const {
-  const RigidMotion& own = after_[owner];
-  Vec3 change = own.change_at(own.center + bounce.arm, direction);
-  if (bounce.body >= 0) {
-    const RigidMotion& other = after_[bounce.body];
-    change += other.change_at(other.center + bounce.other_arm, direction);
+  // Changes the motions by an impulse on the owner, and the opposite one on the other side [N s].
+  void add(const Vec3& change, Motions& motions) const {
+    RigidMotion& own = motions[owner];
+    own.linear += change / own.mass;
+    own.angular += own.turn_by(change, at.arm);
+    if (at.body < 0) return;
+    RigidMotion& other = motions[std::size_t(at.body)];
+    other.linear -= change / other.mass;
+    other.angular -= other.turn_by(change, at.other_arm);
   }
-  return 1 / direction.dot(change);
-}
+  // Returns the mass that an impulse has to move along a direction of length 1 [kg].
+  double mass_along(const Vec3& direction, const Motions& motions) const {
+    const RigidMotion& own = motions[owner];
+    Vec3 change = direction / own.mass + own.turn_by(direction, at.arm).cross(at.arm);
+    if (at.body >= 0) {
+      const RigidMotion& other = motions[std::size_t(at.body)];
+      change += direction / other.mass + other.turn_by(direction, at.other_arm).cross(at.other_arm);
+    }
+    return 1 / direction.dot(change);
+  }
+};
 
-// Gives what is due after this step.
-void Restitution::give(std::size_t owner, Bounce& bounce) {
+// Takes from a bounce what is due after this step, and returns how fast the two shall go apart now [m/s].
+double Restitution::goal_of(std::size_t owner, Bounce& bounce) const {
   const double due = bounce.shares.back(), given_already = std::min(bounce.ahead, due);
   bounce.shares.pop_back();
   bounce.ahead -= given_already;
-  const Vec3 velocity = velocity_between(owner, bounce, after_);
-  const double gift = std::min(due - given_already, bounce.target - bounce.normal.dot(velocity));
-  if (gift <= 0) return;
-  const double impulse = gift * mass_between(owner, bounce, bounce.normal);
-  push(owner, bounce, impulse * bounce.normal);
-  const Vec3 slip = velocity - velocity.dot(bounce.normal) * bounce.normal;
-  if (slip.norm() < 1e-6 * bounce.approach) return;
-  const Vec3 along = slip.normalized();
-  const double stopping = slip.norm() * mass_between(owner, bounce, along);
-  push(owner, bounce, -std::min(friction(owner, bounce) * impulse, stopping) * along);
+  const double speed = bounce.normal.dot(velocity_between(owner, bounce, after_));
+  return std::max(speed, std::min(speed + due - given_already, bounce.target));
+}
+
+// Returns all that touches in a step, with its goals: bounces that leave get what is due to them, and the rest shall
+// not come together faster, as a mat on the ground on which a ball bounces.
+std::vector<Restitution::Push> Restitution::pushes(const std::vector<std::size_t>& island,
+                                                   const std::vector<BodyTouch>& touches) {
+  std::vector<Push> all;
+  bool any = false;
+  for (const std::size_t b : island) {
+    for (Bounce& bounce : bodies_[b]->state_.bounces.begun) {
+      if (!bounce.is_leaving) continue;
+      any = true;
+      all.push_back({b, bounce, goal_of(b, bounce)});
+    }
+  }
+  if (!any) return {};
+  const std::size_t leaving = all.size();
+  for (const std::size_t b : island) {
+    for (const Touching& touching : touchings(b, touches)) {
+      const auto is_of = [&](const Push& push) { return push.owner == b && touching.is_of(push.at); };
+      if (std::any_of(all.begin(), all.begin() + std::ptrdiff_t(leaving), is_of)) continue;
+      Bounce at = place_of(b, touching);
+      const auto hold = [&] { all.push_back({b, at, std::min(0.0, at.normal.dot(velocity_between(b, at, after_)))}); };
+      if (touching.body >= 0) hold();
+      for (std::size_t k = 0; touching.body < 0 && k < touching.corners.size(); ++k) {
+        at.arm = touching.corners[k] - after_[b].center;
+        hold();
+      }
+    }
+  }
+  return all;
+}
+
+// Finds impulses along the normals that are nowhere below 0 and bring all pairs to their goals, and no pair beyond its
+// goal where there is an impulse: projected Gauss-Seidel, as in Jourdan, Alart, Jean 1998, "A Gauss-Seidel like
+// algorithm to solve frictional contact problems". So a floor of many tiles is as one floor.
+void Restitution::solve(std::vector<Push>& all) {
+  constexpr int most_rounds = 200;
+  constexpr double small = 1e-6;  // of the largest change of speed in the first round
+  std::vector<double> mass;
+  for (const Push& push : all) mass.push_back(push.mass_along(push.at.normal, after_));
+  double first = 0;
+  for (int round = 0; round < most_rounds; ++round) {
+    double largest = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      Push& push = all[i];
+      const double short_of = push.goal - push.at.normal.dot(velocity_between(push.owner, push.at, after_));
+      const double change = std::max(-push.impulse, short_of * mass[i]);
+      push.add(change * push.at.normal, after_);
+      push.impulse += change;
+      largest = std::max(largest, std::abs(change / mass[i]));
+    }
+    if (round == 0) first = largest;
+    if (largest <= small * first) break;
+  }
+}
+
+// Lets friction oppose the slip by what the impulses along the normals allow, and stop it at most.
+void Restitution::rub(const std::vector<Push>& all) {
+  for (const Push& push : all) {
+    const Vec3 velocity = velocity_between(push.owner, push.at, after_);
+    const Vec3 slip = velocity - velocity.dot(push.at.normal) * push.at.normal;
+    if (push.impulse <= 0 || slip.isZero(0)) continue;
+    const Vec3 along = slip.normalized();
+    const double stopping = slip.norm() * push.mass_along(along, after_);
+    push.add(-std::min(friction(push.owner, push.at) * push.impulse, stopping) * along, after_);
+  }
+}
+
+// Returns where and how a body touches something, as a bounce has it.
+Bounce Restitution::place_of(std::size_t owner, const Touching& touching) const {
+  Bounce at{.collider = touching.collider, .body = touching.body};
+  at.normal = touching.push.normalized();
+  at.arm = touching.place - after_[owner].center;
+  if (touching.body >= 0) at.other_arm = touching.place - after_[std::size_t(touching.body)].center;
+  return at;
 }
 
 // Begins the bounces of a body, and goes on with those that have begun. One off a body that is too far away for a
@@ -171,12 +256,14 @@ void Restitution::go_on(std::size_t owner, const std::vector<std::size_t>& islan
   std::vector<Bounce>& begun = bodies_[owner]->state_.bounces.begun;
   for (const Touching& touching : touchings) {
     auto bounce = std::ranges::find_if(begun, [&](const Bounce& one) { return touching.is_of(one); });
-    const bool is_new = bounce == begun.end();
-    if (is_new) bounce = begun.insert(bounce, {.collider = touching.collider, .body = touching.body});
-    bounce->normal = touching.push.normalized();
-    bounce->arm = touching.place - after_[owner].center;
-    if (touching.body >= 0) bounce->other_arm = touching.place - after_[touching.body].center;
-    if (!is_new) continue;
+    const Bounce at = place_of(owner, touching);
+    if (bounce != begun.end()) {
+      bounce->normal = at.normal;
+      bounce->arm = at.arm;
+      bounce->other_arm = at.other_arm;
+      continue;
+    }
+    bounce = begun.insert(bounce, at);
     const double gravity = gravity_between(owner, *bounce), step = model.time_step;
     const double speed = -bounce->normal.dot(velocity_between(owner, *bounce, before_));
     constexpr double creeping = 0.01;  // of its size in a second: what rests, or is pressed to rest
@@ -227,12 +314,12 @@ void Restitution::after_step(const std::vector<std::size_t>& island, const std::
     stepped.push_back(after_[b]);
   }
   for (const std::size_t b : island) go_on(b, island, touchings(b, touches));
+  std::vector<Push> all = pushes(island, touches);
+  solve(all);
+  rub(all);
   for (const std::size_t b : island) {
-    std::vector<Bounce>& begun = bodies_[b]->state_.bounces.begun;
-    std::erase_if(begun, [&](Bounce& bounce) {
-      if (bounce.is_leaving) give(b, bounce);
-      return bounce.is_leaving && bounce.shares.empty();
-    });
+    const auto is_over = [](const Bounce& bounce) { return bounce.is_leaving && bounce.shares.empty(); };
+    std::erase_if(bodies_[b]->state_.bounces.begun, is_over);
   }
   for (std::size_t m = 0; m < island.size(); ++m) set_velocities(island[m], stepped[m]);
 }

@@ -9,11 +9,12 @@
 // coefficient: a stiff ball leaves the ground at once, and a soft one takes as long as it took to be pressed flat. What
 // elasticity gives by itself in these steps is not given a second time. The gift is an impulse on both bodies, at the
 // place where they touch, with the friction that belongs to it; so momentum is kept, and a bar that lands on its end
-// begins to turn. The energy is counted (Bounces::given).
+// begins to turn. Impulses of all that touch in an island are found together: many tiles are as one floor, and a ball
+// bounces off a light mat that lies on the ground. The energy is counted (Bounces::given).
 //
-// What comes together more slowly than gravity moves it in two steps does not bounce, as in Mueller, Macklin,
-// Chentanez, Jeschke, Kim 2020, "Detailed rigid body simulation with extended position based dynamics", section 3.6:
-// otherwise nothing would come to rest.
+// What comes together more slowly than the speed that gravity gives in two steps does not bounce, as in Mueller,
+// Macklin, Chentanez, Jeschke, Kim 2020, "Detailed rigid body simulation with extended position based dynamics",
+// section 3.6: otherwise nothing would come to rest.
 #pragma once
 
 #include <memory>
@@ -37,6 +38,7 @@ class Restitution {
 
  private:
   struct Touching;
+  struct Push;
   using Motions = std::vector<RigidMotion>;  // by body
 
   bool may_bounce(const std::vector<std::size_t>& island) const;
@@ -46,12 +48,14 @@ class Restitution {
   double gravity_between(std::size_t owner, const Bounce& bounce) const;
   Vec3 velocity_between(std::size_t owner, const Bounce& bounce, const Motions& motions) const;
 
+  Bounce place_of(std::size_t owner, const Touching& touching) const;
   std::vector<Touching> touchings(std::size_t owner, const std::vector<BodyTouch>& touches) const;
   void go_on(std::size_t owner, const std::vector<std::size_t>& island, const std::vector<Touching>& touchings);
   bool approach(std::size_t owner, Bounce& bounce, double gained, double speed) const;
-  double mass_between(std::size_t owner, const Bounce& bounce, const Vec3& direction) const;
-  void give(std::size_t owner, Bounce& bounce);
-  void push(std::size_t owner, const Bounce& bounce, const Vec3& impulse);
+  double goal_of(std::size_t owner, Bounce& bounce) const;
+  std::vector<Push> pushes(const std::vector<std::size_t>& island, const std::vector<BodyTouch>& touches);
+  void solve(std::vector<Push>& all);
+  void rub(const std::vector<Push>& all);
   void set_velocities(std::size_t body, const RigidMotion& stepped);
 
   const SceneDef& scene_;

@@ -88,12 +88,17 @@ TEST(ModelScene, TellsNothingThatSettingsMakeUntrue) {
 }
 
 TEST(ModelScene, TakesItsSizeAndAxisFromSettings) {
-  const ModelWish none = wish_of({"look.labels=true", "body.model.size=big", "body.model.up=w", "body.model.size=-1"});
-  EXPECT_FALSE(none.up);
-  EXPECT_EQ(none.size, 0.5);
-  const ModelWish wish = wish_of({"body.model.size = 2", "body.model.size=1.5", "body.model.up=\"-y\""});
+  for (const char* wrong : {"look.labels=true", "body.model.size=big", "body.model.size=-1", "body.model.size=1e300",
+                            "body.model.size=inf", "body.model.up=w", "body.model.sizes=2"}) {
+    const ModelWish none = wish_of({wrong});
+    EXPECT_FALSE(none.up) << wrong;
+    EXPECT_EQ(none.size, 0.5) << wrong;
+  }
+  const ModelWish wish = wish_of({"body.model.size=2", "body.model.size=1_0", "body.model.up=\"-y\""});
   EXPECT_EQ(wish.up, UpAxis::minus_y);
-  EXPECT_EQ(wish.size, 1.5);
+  EXPECT_EQ(wish.size, 10);
+  EXPECT_EQ(wish_of({"body.model.up='z'"}).up, UpAxis::z);
+  EXPECT_EQ(wish_of({"body.model.up=-x"}).up, UpAxis::minus_x);
 }
 
 TEST(Sagging, OfAColumnIsThatOfItsWeight) {

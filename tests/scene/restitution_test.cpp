@@ -167,6 +167,55 @@ contact = { restitution = 0.8 }
   EXPECT_LT(rigid.angular.z(), -5);  // its lower end, on the left, is thrown up
 }
 
+TEST(Restitution, AFloorOfTilesIsAsOneFloor) {
+  const auto energy = [](const std::string& floor) {
+    World world = world_of(R"([[body]]
+name = "slab"
+box = { extent = [0.4, 0.16, 0.4], cells = [4, 2, 4] }
+position = [0.03, 0.5, 0.02]
+material = { model = "stable-neo-hookean", young = 1e6, poisson = 0.4 }
+contact = { restitution = 0.9 }
+)" + floor);
+    const double start = center(world, 0).y();
+    double top = 0;
+    while (world.frames() < 24) {
+      EXPECT_TRUE(world.play(world.frames()));
+      if (world.body(0).state().bounces.given > 0) top = std::max(top, center(world, 0).y());
+    }
+    EXPECT_LT(std::hypot(velocity(world, 0).x(), velocity(world, 0).z()), 0.05);
+    return (top - start + 0.5) / 0.5;
+  };
+  std::string tiles;
+  for (int i = 0; i < 36; ++i)
+    tiles += fmt::format(
+        "[[collider]]\nname = \"t{}\"\nshape = {{ box = {{ extent = [0.15, 0.1, 0.15] }} }}\nposition = [{}, -0.05, "
+        "{}]\n",
+        i, 0.15 * (i % 6) - 0.375, 0.15 * (i / 6) - 0.375);
+  const double one = energy(ground);
+  EXPECT_NEAR(one, 0.81, 0.1);
+  EXPECT_NEAR(energy(tiles), one, 0.05);
+  EXPECT_NEAR(energy(ground + "[[collider]]\nname = \"again\"\nshape = { half_space = { normal = [0, 1, 0] } }\n"), one,
+              0.02);
+}
+
+TEST(Restitution, ABallBouncesOffALightMatOnTheGround) {
+  const std::string mat = R"([[body]]
+name = "mat"
+box = { extent = [0.6, 0.05, 0.6], cells = [6, 1, 6] }
+density = 50
+material = { model = "stable-neo-hookean", young = 1e7, poisson = 0.3 }
+)";
+  World world = world_of(ball("ball", "position = [0, 0.6, 0]", 1e8, 0.9) + mat + ground);
+  double top = 0;
+  while (world.body(0).state().bounces.given == 0 && world.frames() < 30) EXPECT_TRUE(world.play(world.frames()));
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_TRUE(world.play(world.frames()));
+    top = std::max(top, center(world, 0).y() - 0.15);
+  }
+  EXPECT_GT(top, 0.2) << "the ground bears what the mat cannot";
+  EXPECT_LT(top, 0.81 * 0.55 + 0.05);
+}
+
 TEST(Restitution, ARacketPassesOnItsSpeed) {
   // A stiff ball floats in the way of a plate that comes up at 1 m/s.
   World world = world_of("gravity = [0, 0, 0]\n" + ball("ball", "position = [0, 0.1, 0]", 1e7, 0) +
@@ -245,7 +294,7 @@ TEST(Restitution, IsRefusedOfClothAndAboveOne) {
       "[[body]]\ncloth = { extent = [1, 1], cells = [4, 4] }\nmaterial = \"cotton\"\ncontact = { restitution = 0.5 }\n";
   EXPECT_EQ(
       test::problems_of(cloth),
-      std::vector<std::string>{"scene.toml:4:11: contact.restitution: of solids; a cloth has no motion as a whole "
+      std::vector<std::string>{"scene.toml:4:11: contact.restitution is for solids: a cloth has no motion as a whole "
                                "that could bounce"});
   EXPECT_EQ(test::problems_of(ground + "restitution = 1.5\n" + ball("ball", "", 1e5, 0)),
             std::vector<std::string>{"scene.toml:4:15: restitution = 1.5: must be 0 to 1"});

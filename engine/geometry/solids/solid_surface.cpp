@@ -110,24 +110,16 @@ namespace {
 
 void turn_and_scale(Positions& points, const SurfaceOptions& options) {
   // A turn by right angles exchanges coordinates, and needs no arithmetic.
+  const auto exchange = [&points](int a, int b, int turned_over) {
+    points.col(a).swap(points.col(b));
+    points.col(turned_over) *= -1;
+  };
   switch (options.up) {
     case UpAxis::y: break;
-    case UpAxis::z:
-      points = points(Eigen::all, {0, 2, 1}).eval();
-      points.col(2) *= -1;
-      break;
-    case UpAxis::x:
-      points = points(Eigen::all, {1, 0, 2}).eval();
-      points.col(0) *= -1;
-      break;
-    case UpAxis::minus_z:
-      points = points(Eigen::all, {0, 2, 1}).eval();
-      points.col(1) *= -1;
-      break;
-    case UpAxis::minus_x:
-      points = points(Eigen::all, {1, 0, 2}).eval();
-      points.col(1) *= -1;
-      break;
+    case UpAxis::z: exchange(1, 2, 2); break;
+    case UpAxis::x: exchange(0, 1, 0); break;
+    case UpAxis::minus_z: exchange(1, 2, 1); break;
+    case UpAxis::minus_x: exchange(0, 1, 1); break;
     case UpAxis::minus_y: points.rightCols(2) *= -1; break;
   }
   if (options.unit != LengthUnit::metre) points *= metres(options.unit);

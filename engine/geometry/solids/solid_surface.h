@@ -22,7 +22,7 @@ struct Names<Closing> {
                                        Name{Closing::winding, "winding"}, Name{Closing::never, "never"}};
 };
 
-// Names the axis of a file that points up, or the one that points down; here y is up.
+// Names the direction of a file that points up: an axis, or the opposite of one. Here y is up.
 enum class UpAxis { x, y, z, minus_x, minus_y, minus_z };
 template <>
 struct Names<UpAxis> {

@@ -34,7 +34,7 @@ void check_left_by(const std::filesystem::path& folder, const std::string& maker
                      fmt::format("holds files that no {} left there (no {}); choose another folder", maker, mark));
 }
 
-FolderLock::FolderLock(const std::filesystem::path& folder, FolderUse use) {
+FolderLock::FolderLock(const std::filesystem::path& folder, FolderUse use) : path_(folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   // Children do not inherit the descriptor (O_CLOEXEC), because they may live longer.
@@ -42,12 +42,16 @@ FolderLock::FolderLock(const std::filesystem::path& folder, FolderUse use) {
   const int kind = use == FolderUse::alone ? LOCK_EX : LOCK_SH;
   if (folder_ < 0 || ::flock(folder_, kind | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   ::close(folder_);
-  throw InputError("--out " + folder.string(),
+  refuse();
+}
+
+void FolderLock::refuse() const {
+  throw InputError("--out " + path_.string(),
                    "another run writes into this folder now; wait until it has ended, or choose another folder");
 }
 
 void FolderLock::share() {
-  if (folder_ >= 0) ::flock(folder_, LOCK_SH | LOCK_NB);
+  if (folder_ >= 0 && ::flock(folder_, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK) refuse();
 }
 
 FolderLock::~FolderLock() {

@@ -22,12 +22,16 @@ class FolderLock {
   // Throws InputError when another process holds the lock; where both use the folder with others, none is in the way.
   explicit FolderLock(const std::filesystem::path& folder, FolderUse use = FolderUse::alone);
   ~FolderLock();
-  // Lets others in who use the folder with others.
+  // From now on, processes that use the folder with others may use it too. Throws InputError when one that uses it
+  // alone has come in between.
   void share();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
  private:
+  [[noreturn]] void refuse() const;
+
+  std::filesystem::path path_;
   int folder_;  // its file descriptor; negative without a lock
 };
 

@@ -9,9 +9,9 @@
 #include "geometry/skins/surface_colors.h"
 #include "scene/definition/keyed_motion.h"
 #include "scene/definition/scene_def.h"
+#include "sim/model/bounces.h"
 #include "sim/model/flow.h"
 #include "sim/model/model.h"
-#include "sim/model/bounces.h"
 #include "sim/model/solver_memory.h"
 
 namespace supple {

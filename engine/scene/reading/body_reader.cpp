@@ -368,7 +368,7 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   body.pressure_place = table.place("pressure");
   body.contact = read_contact(table);
   if (body.cloth && body.contact.restitution > 0)
-    table.complain("contact", "contact.restitution: of solids; a cloth has no motion as a whole that could bounce");
+    table.complain("contact", "contact.restitution is for solids: a cloth has no motion as a whole that could bounce");
   std::set<std::string> names;
   for (const ConfigTable& row : table.tables({"handles", "", "vertices that follow a motion from outside"})) {
     body.handles.push_back(read_handle(row));

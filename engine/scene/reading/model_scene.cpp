@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 
 #include "base/read_file.h"
@@ -159,24 +158,15 @@ std::vector<std::string> ModelScene::notes_with(const std::vector<std::string>& 
 }
 
 ModelWish wish_of(const std::vector<std::string>& settings) {
+  Config asked = Config::parse("[[body]]\nname = \"model\"\n", "settings", {});
+  for (const std::string& setting : settings)
+    if (setting.starts_with("body.model.up=") || setting.starts_with("body.model.size=")) asked.set(setting, {});
   ModelWish wish;
-  const auto value_of = [](const std::string& setting, std::string_view key) -> std::optional<std::string> {
-    if (!setting.starts_with(key)) return std::nullopt;
-    std::string value = setting.substr(key.size());
-    std::erase_if(value, [](char c) { return c == '"' || c == ' '; });
-    return value;
-  };
-  for (const std::string& setting : settings) {
-    if (const auto up = value_of(setting, "body.model.up=")) {
-      if (const auto axis = value_named<UpAxis>(*up)) wish.up = *axis;
-    }
-    if (const auto size = value_of(setting, "body.model.size=")) {
-      double number = 0;
-      const auto [end, error] = std::from_chars(size->data(), size->data() + size->size(), number);
-      if (error == std::errc() && end == size->data() + size->size() && number > 0) wish.size = number;
-    }
-  }
-  return wish;
+  const ConfigTable model = asked.root().tables({"body", "", ""}).front();
+  wish.size = model.number_if_given({"size", "m", ""}, Range::above(0, 1e6)).value_or(wish.size);
+  if (model.has("up")) wish.up = model.word<UpAxis>({"up", "", ""}, UpAxis::y);
+  const bool is_wrong = !asked.complaints().empty();  // which the scene's own reader says
+  return is_wrong ? ModelWish() : wish;
 }
 
 ModelScene model_scene(const std::filesystem::path& model, const ModelWish& wish) {
@@ -207,7 +197,7 @@ ModelScene model_scene(const std::filesystem::path& model, const ModelWish& wish
   scene.notes.push_back({fmt::format("it sags by at most some 5 % of its height with young = {:g} Pa; --set "
                                      "body.model.material.young softens or stiffens it",
                                      young),
-                         {"body.model.material", "body.model.turn_deg"}});
+                         {"body.model.material", "body.model.turn_deg", "body.model.density", "gravity"}});
   scene.notes.push_back({fmt::format("its lowest {:g} % stay where they land, so that it stands; --set "
                                      "body.model.handles=[] lets it topple",
                                      100 * standing.sole),

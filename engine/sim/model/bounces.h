@@ -16,7 +16,7 @@ namespace supple {
 struct Bounce {
   std::int32_t collider = -1, body = -1;  // what the body bounces off: one of the two is -1
   Vec3 normal = Vec3::Zero();             // away from the other side
-  Vec3 arm = Vec3::Zero();                // from the body's center of mass to where it touches [m]
+  Vec3 arm = Vec3::Zero();                // from the center of the body's motion to where it touches [m]
   Vec3 other_arm = Vec3::Zero();          // the same of the other body [m]
   double approach = 0;                    // how fast the two came together [m/s]
   double sunk = 0;                        // how far the two went on together since they touched [m]

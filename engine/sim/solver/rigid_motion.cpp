@@ -40,11 +40,8 @@ Vec3 least_solution(const Mat3& matrix, const Vec3& right) {
 
 }  // namespace
 
-RigidMotion RigidMotion::pushed(const Vec3& impulse, const Vec3& place) const {
-  RigidMotion after = *this;
-  after.linear += impulse / mass;
-  after.angular += least_solution(inertia, (place - center).cross(impulse));
-  return after;
+Vec3 RigidMotion::turn_by(const Vec3& impulse, const Vec3& arm) const {
+  return least_solution(inertia, arm.cross(impulse));
 }
 
 RigidMotion rigid_motion(const Model& model, const Positions& x, const Positions& v) {

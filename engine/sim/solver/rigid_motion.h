@@ -1,7 +1,8 @@
 // Finds how a body moves as a whole: the rigid motion that is nearest to the velocities of its vertices, by a
 // least-squares fit with the masses as weights, as in Mueller, Heidelberger, Hennix, Ratcliff 2007, "Position based
-// dynamics", section 3.5. It has the linear and the angular momentum of the body. Where handles hold vertices, the
-// rigid motion is one that goes with these: a body on a hinge swings about it, and one that is clamped stays.
+// dynamics", section 3.5. It has the linear and the angular momentum of a body that nothing holds. Where handles hold
+// vertices, these count a million times as much, so that the rigid motion goes with them: a body on a hinge swings
+// about it, and one that is clamped stays.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,17 +13,16 @@ namespace supple {
 
 // Holds the velocity of a rigid body, and how it resists a push.
 struct RigidMotion {
-  double mass = 0;                                     // [kg]
-  Mat3 inertia = Mat3::Zero();                         // about the center [kg m^2]
-  Vec3 center = Vec3::Zero();                          // of mass [m]
-  Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();  // velocities [m/s], [rad/s]
+  double mass = 0;              // the sum of the weights [kg]
+  Mat3 inertia = Mat3::Zero();  // about the center [kg m^2]
+  Vec3 center = Vec3::Zero();   // of the weights, which is that of mass where nothing is held [m]
+  Vec3 linear = Vec3::Zero();   // velocity of the center [m/s]
+  Vec3 angular = Vec3::Zero();  // [rad/s]
 
   // Returns the velocity of a place that goes with the body [m/s].
   Vec3 at(const Vec3& place) const { return linear + angular.cross(place - center); }
-  // Returns how an impulse [N s] at a place changes the velocities. Mass, inertia and center are the same.
-  RigidMotion pushed(const Vec3& impulse, const Vec3& place) const;
-  // Returns how the velocity of the place changes by it [m/s].
-  Vec3 change_at(const Vec3& place, const Vec3& impulse) const { return pushed(impulse, place).at(place) - at(place); }
+  // Returns how an impulse [N s] at a place, as seen from the center, changes the angular velocity [rad/s].
+  Vec3 turn_by(const Vec3& impulse, const Vec3& arm) const;
 };
 
 // x: positions, n x 3, in the model's order [m]; v: velocities, n x 3 [m/s].
