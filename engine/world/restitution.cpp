@@ -173,7 +173,8 @@ double Restitution::goal_of(std::size_t owner, Bounce& bounce) const {
 }
 
 // Returns all that touches in a step, with its goals: bounces that leave get what is due to them, and the rest shall
-// not come together faster, as a mat on the ground on which a ball bounces.
+// not come together faster, as a mat on the ground on which a ball bounces. Cloth, which has no motion as a whole, is
+// left out.
 std::vector<Restitution::Push> Restitution::pushes(const std::vector<std::size_t>& island,
                                                    const std::vector<BodyTouch>& touches) {
   std::vector<Push> all;
@@ -187,8 +188,12 @@ std::vector<Restitution::Push> Restitution::pushes(const std::vector<std::size_t
   }
   if (!any) return {};
   const std::size_t leaving = all.size();
+  const auto is_cloth = [&](std::int64_t body) {
+    return body >= 0 && scene_.bodies[std::size_t(body)].cloth.has_value();
+  };
   for (const std::size_t b : island) {
     for (const Touching& touching : touchings(b, touches)) {
+      if (is_cloth(std::int64_t(b)) || is_cloth(touching.body)) continue;
       const auto is_of = [&](const Push& push) { return push.owner == b && touching.is_of(push.at); };
       if (std::any_of(all.begin(), all.begin() + std::ptrdiff_t(leaving), is_of)) continue;
       Bounce at = place_of(b, touching);
