@@ -120,11 +120,11 @@ bool Restitution::approach(std::size_t owner, Bounce& bounce, double gained, dou
   bounce.shares.push_back(std::max(0.0, gained));
   bounce.sunk += model.time_step * std::max(0.0, -speed);
   if (speed < -stopped * bounce.approach) return true;
-  // What gravity gave since they touched counts as approach. The velocity of a step of backward Euler is that in the
-  // middle of it, half a step of falling behind its start.
   const double gravity = gravity_between(owner, bounce), kept = coefficient(owner, bounce);
-  const double half_a_step = model.scheme.theta == 1 ? 0.5 * model.time_step : 0;
   if (kept == 0) return false;
+  // Gravity goes on driving the two together while one is pressed flat, and this counts as approach too. A step of
+  // backward Euler has the velocity of its middle, and gravity has half a step to slow the two down until then.
+  const double half_a_step = model.scheme.theta == 1 ? 0.5 * model.time_step : 0;
   bounce.target =
       kept * std::hypot(bounce.approach, std::sqrt(2 * gravity * std::max(0.0, bounce.sunk))) + half_a_step * gravity;
   double taken = 0;
@@ -176,7 +176,7 @@ double Restitution::goal_of(std::size_t owner, Bounce& bounce) const {
 // not come together faster, as a mat on the ground on which a ball bounces. Cloth, which has no motion as a whole, is
 // left out.
 std::vector<Restitution::Push> Restitution::pushes(const std::vector<std::size_t>& island,
-                                                   const std::vector<BodyTouch>& touches) {
+                                                   const std::vector<std::vector<Touching>>& touched) {
   std::vector<Push> all;
   bool any = false;
   for (const std::size_t b : island) {
@@ -191,8 +191,9 @@ std::vector<Restitution::Push> Restitution::pushes(const std::vector<std::size_t
   const auto is_cloth = [&](std::int64_t body) {
     return body >= 0 && scene_.bodies[std::size_t(body)].cloth.has_value();
   };
-  for (const std::size_t b : island) {
-    for (const Touching& touching : touchings(b, touches)) {
+  for (std::size_t m = 0; m < island.size(); ++m) {
+    const std::size_t b = island[m];
+    for (const Touching& touching : touched[m]) {
       if (is_cloth(std::int64_t(b)) || is_cloth(touching.body)) continue;
       const auto is_of = [&](const Push& push) { return push.owner == b && touching.is_of(push.at); };
       if (std::any_of(all.begin(), all.begin() + std::ptrdiff_t(leaving), is_of)) continue;
@@ -318,8 +319,10 @@ void Restitution::after_step(const std::vector<std::size_t>& island, const std::
     after_[b] = rigid_motion(bodies_[b]->model(), bodies_[b]->state_.x, bodies_[b]->state_.v);
     stepped.push_back(after_[b]);
   }
-  for (const std::size_t b : island) go_on(b, island, touchings(b, touches));
-  std::vector<Push> all = pushes(island, touches);
+  std::vector<std::vector<Touching>> touched;  // by member of the island
+  for (const std::size_t b : island) touched.push_back(touchings(b, touches));
+  for (std::size_t m = 0; m < island.size(); ++m) go_on(island[m], island, touched[m]);
+  std::vector<Push> all = pushes(island, touched);
   solve(all);
   rub(all);
   for (const std::size_t b : island) {

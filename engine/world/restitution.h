@@ -53,7 +53,7 @@ class Restitution {
   void go_on(std::size_t owner, const std::vector<std::size_t>& island, const std::vector<Touching>& touchings);
   bool approach(std::size_t owner, Bounce& bounce, double gained, double speed) const;
   double goal_of(std::size_t owner, Bounce& bounce) const;
-  std::vector<Push> pushes(const std::vector<std::size_t>& island, const std::vector<BodyTouch>& touches);
+  std::vector<Push> pushes(const std::vector<std::size_t>& island, const std::vector<std::vector<Touching>>& touched);
   void solve(std::vector<Push>& all);
   void rub(const std::vector<Push>& all);
   void set_velocities(std::size_t body, const RigidMotion& stepped);
