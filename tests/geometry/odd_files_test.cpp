@@ -99,7 +99,8 @@ void add_obj(std::vector<OddFile>& files) {
   read("thirty digits", replaced_everywhere(box, "v 1 ", "v 1.000000000000000000000000000000 "));
   read("twenty digits before the point", replaced_everywhere(box, "v 1 ", "v 00000000000000000000001 "));
   read("a number below all doubles", replaced(box, "v 0 0 0", "v 0 1e-400 0"));
-  read("lines and points", box + "l 1 2\np 3\n");
+  read("lines and points", box + "l 1 2\np 3\n",
+       "2 of its lines and points (l, p) were left out: only faces have a surface");
   read("groups, objects and smoothing", "o box\ng a b\ns off\n" + box);
   read("a name with a comment's sign", "o box#1\n" + box);
   read("a missing library", "mtllib none.mtl\n" + box, "its materials are missing");

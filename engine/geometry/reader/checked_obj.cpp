@@ -43,6 +43,10 @@ class ObjChecker {
       result_.remarks.push_back(fmt::format("{} line{} unknown to OBJ {} left out, the first is line {}", unknown_,
                                             unknown_ == 1 ? "" : "s", unknown_ == 1 ? "was" : "were", unknown_line_));
     }
+    if (lines_ > 0) {
+      result_.remarks.push_back(fmt::format("{} of its lines and points (l, p) {} left out: only faces have a surface",
+                                            lines_, lines_ == 1 ? "was" : "were"));
+    }
     if (free_form_) result_.remarks.emplace_back("its free-form curves and surfaces are not read");
     return std::move(result_);
   }
@@ -70,6 +74,7 @@ class ObjChecker {
   // Lines that decide neither shape nor colour are left out.
   void pass_over(std::string_view key) {
     constexpr std::array surfaces = {"curv", "curv2", "surf", "bzp", "bsp", "cdc", "cdp", "res"};
+    lines_ += key == "l" || key == "p" ? 1 : 0;
     constexpr std::array known = {"vp",    "p",     "l",      "cstype", "deg",      "bmat",      "step",
                                   "parm",  "trim",  "hole",   "scrv",   "sp",       "end",       "con",
                                   "mg",    "bevel", "usemap", "lod",    "c_interp", "d_interp",  "ctech",
@@ -172,7 +177,7 @@ class ObjChecker {
   CheckedSurface result_;
   Bounds box_;
   std::array<Listed, 3> lists_ = {Listed{"vertex"}, Listed{"texture coordinate"}, Listed{"normal"}};
-  long long faces_ = 0, small_ = 0, unknown_ = 0;
+  long long faces_ = 0, small_ = 0, unknown_ = 0, lines_ = 0;
   int unknown_line_ = 0;
   bool free_form_ = false;
 };
