@@ -213,6 +213,9 @@ TEST(Comparison, FindsMotionThatIsNotThatOfTheStates) {
   const Result states = run(folder.path, {"compare", "long", "moved"});
   EXPECT_EQ(states.status, 1) << states.err;
   EXPECT_EQ(states.out.find("though the states"), std::string::npos) << states.out;
+  const auto both = nlohmann::json::parse(run(folder.path, {"compare", "long", "moved", "--json"}).out);
+  EXPECT_FALSE(both["same_states"].get<bool>());
+  EXPECT_FALSE(both["same_motion"].get<bool>());
 }
 
 TEST(Comparison, NamesDifferencesByPath) {

@@ -99,7 +99,10 @@ bool RunComparison::only_motion_differs(const BodyComparison& body) const {
 }
 
 bool RunComparison::same_motion() const {
-  return std::ranges::none_of(bodies, [this](const BodyComparison& body) { return only_motion_differs(body); });
+  const auto same = [](const BodyComparison& body) {
+    return !body.first_difference && body.vertices_a == body.vertices_b && body.saved_a == body.saved_b;
+  };
+  return only_a.empty() && only_b.empty() && std::ranges::all_of(bodies, same);
 }
 
 RunComparison compare_runs(const RunRecord& a, const RunRecord& b) {

@@ -41,6 +41,7 @@ struct RunComparison {
   bool same_states() const;
   // Tells whether a body's saved motion differs where the states do not, which means that a file was changed.
   bool only_motion_differs(const BodyComparison& body) const;
+  // Tells whether both runs have the same bodies, all with the same saved motion (single precision) in as many frames.
   bool same_motion() const;
 };
 
