@@ -74,7 +74,7 @@ class ObjChecker {
   // Lines that decide neither shape nor colour are left out.
   void pass_over(std::string_view key) {
     constexpr std::array surfaces = {"curv", "curv2", "surf", "bzp", "bsp", "cdc", "cdp", "res"};
-    lines_ += key == "l" || key == "p" ? 1 : 0;
+    if (key == "l" || key == "p") ++lines_;
     constexpr std::array known = {"vp",    "p",     "l",      "cstype", "deg",      "bmat",      "step",
                                   "parm",  "trim",  "hole",   "scrv",   "sp",       "end",       "con",
                                   "mg",    "bevel", "usemap", "lod",    "c_interp", "d_interp",  "ctech",
