@@ -33,9 +33,10 @@ struct Contact {
   double depth;             // of the point below the plane when found; 0: it was near, not touching [m]
   std::int32_t number = 0;  // of the point in this step: a vertex, or above all vertices' numbers
   // Friction is lagged; it opposes u - origin along the plane.
-  double friction = 0;         // coefficient times normal force [N]
-  Vec3 origin = Vec3::Zero();  // what u would be if the point had moved with the other side [m]
-  double stick = 0;            // friction is whole above this slip in a step [m]
+  double friction = 0;  // coefficient times normal force [N]
+  // What u would be if the point had moved with the other side; not set for colliders without friction [m].
+  Vec3 origin = Vec3::Zero();
+  double stick = 0;  // friction is whole above this slip in a step [m]
 };
 
 // Returns how far a contact's point is above its plane, negative below [m].

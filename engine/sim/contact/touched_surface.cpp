@@ -118,9 +118,9 @@ void TouchedSurface::add(const ContactStencil& stencil, std::int32_t number, con
   contact.offset = layer - deep;
   contact.stiffness = solver_.contact.stiffness / (h * h) * mass;
   contact.depth = std::max(0.0, -gap(contact, x_));
+  contact.origin = contact.stencil.at(q_);
   if (meeting_.friction > 0) {
     contact.stick = solver_.contact.stick * size_ * h;
-    contact.origin = contact.stencil.at(q_);
     contact.friction = meeting_.friction * lagged_force(contact, deep > 0 ? 0 : -field, -gap(contact, y_),
                                                         model_.scheme.inertia * mass / (h * h));
   }

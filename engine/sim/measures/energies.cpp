@@ -28,10 +28,33 @@ double spring_energy(const Model& model, const Positions& targets, const Positio
   return sum;
 }
 
-// Returns the work of contacts over a step from q to the current iterate [J]. With a collider it is the work of all
-// forces along the way of the collider, and of friction along the way on the collider. The normal force on a collider
-// that stands does no work, although a vertex that comes down on it, as those of a rolling ball do, has a way; only a
-// vertex that is pushed out gains energy. The forces of another body do work along the whole way.
+// Returns the work over a step from q to x of a contact with another body, or of a body with itself, on the free
+// vertices of its stencil [J]. force: on the stencil's point. What pushes the point out gives energy. What stops it
+// takes no more than the other side receives, which moves away by less: the rest is lost in the impact. Without this, a
+// step that was left with a large force, at a contact that is stiff, would count as one that took far more than the
+// body ever had.
+double work_between_bodies(const Contact& contact, const Vec3& force, const Positions& q, const Positions& x) {
+  const Vec3 way = contact.stencil.of_free(x) - contact.stencil.of_free(q);
+  const double pressing = force.dot(contact.normal);
+  const double own = pressing * way.dot(contact.normal);
+  const double of_other = pressing * (contact.origin - contact.stencil.at(q)).dot(contact.normal);
+  const double friction = force.dot(way) - own;
+  return friction + (own >= 0 ? own : std::clamp(of_other, own, 0.0));
+}
+
+// Returns the work of a contact with a collider over a step from q to x [J]: that of all forces along the way of the
+// collider, and of friction along the way on the collider. The normal force on a collider that stands does no work,
+// although a vertex that comes down on it, as those of a rolling ball do, has a way; only a vertex that is pushed out
+// gains energy. force: on all free vertices.
+double work_of_collider(const StepInputs& inputs, const Contact& contact, const Vec3& force, const Positions& q,
+                        const Positions& x) {
+  const Vec3 from = contact.stencil.at(q), carried = carried_by(inputs, contact.other.collider, from) - from;
+  const Vec3 slip = contact.stencil.at(x) - from - carried;
+  const double pressing = force.dot(contact.normal), away = slip.dot(contact.normal);
+  return force.dot(carried) + force.dot(slip) - pressing * away + pressing * std::max(0.0, away);
+}
+
+// Returns the work of contacts over a step from q to the current iterate [J].
 double work_of_contacts(const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
   const Positions& x = w.current.x;
   std::vector<Contact> one(1);
@@ -41,17 +64,14 @@ double work_of_contacts(const StepInputs& inputs, const Positions& q, OpenWorksp
     one.front() = contact;
     for (int k = 0; k < stencil.free; ++k) w.scratch.row(stencil.vertex[k]).setZero();
     add_contacts(one, x, nullptr, w.direction, &w.scratch, -1);
-    Vec3 force = Vec3::Zero();
-    for (int k = 0; k < stencil.free; ++k) force += w.scratch.row(stencil.vertex[k]).transpose();
-    if (!contact.other.is_collider()) {
-      for (int k = 0; k < stencil.free; ++k)
-        work += w.scratch.row(stencil.vertex[k]).dot(x.row(stencil.vertex[k]) - q.row(stencil.vertex[k]));
-      continue;
+    if (contact.other.is_collider()) {
+      Vec3 force = Vec3::Zero();
+      for (int k = 0; k < stencil.free; ++k) force += w.scratch.row(stencil.vertex[k]).transpose();
+      work += work_of_collider(inputs, contact, force, q, x);
+    } else {
+      const Vec3 force = w.scratch.row(stencil.vertex[0]).transpose() / stencil.weight[0];
+      work += work_between_bodies(contact, force, q, x);
     }
-    const Vec3 from = stencil.at(q), carried = carried_by(inputs, contact.other.collider, from) - from;
-    const Vec3 slip = stencil.at(x) - from - carried;
-    const double pressing = force.dot(contact.normal), away = slip.dot(contact.normal);
-    work += force.dot(carried) + force.dot(slip) - pressing * away + pressing * std::max(0.0, away);
   }
   return work;
 }
