@@ -96,11 +96,14 @@ std::unique_ptr<SearchRule> newton_rule(const Method& method, const Model& model
 
 }  // namespace
 
+std::optional<std::string> why_unsuited(const Method& method, const Model& model) {
+  if (method.acceleration != Acceleration::admm || model.fabrics.empty()) return std::nullopt;
+  return "admm: has no local step for the triangles of cloth, which body '" + model.name + "' has";
+}
+
 std::unique_ptr<SearchRule> make_rule(const Method& method, const Model& model) {
   if (const auto problem = problem_of(method)) throw InputError("method", problem->message);
-  if (method.acceleration == Acceleration::admm && !model.fabrics.empty())
-    throw InputError("method",
-                     "admm: has no local step for the triangles of cloth, which body '" + model.name + "' has");
+  if (const auto reason = why_unsuited(method, model)) throw InputError("method", *reason);
   const bool chebyshev = method.acceleration == Acceleration::chebyshev;
   if (method.matrix == StartMatrix::vertex_blocks) return std::make_unique<VertexBlockRule>(model, chebyshev);
   if (method.acceleration == Acceleration::admm) return std::make_unique<SplittingRule>();

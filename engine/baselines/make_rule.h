@@ -3,6 +3,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "sim/model/method.h"
@@ -10,8 +12,11 @@
 
 namespace supple {
 
+// Says why a method cannot solve a model; nothing where it can.
+std::optional<std::string> why_unsuited(const Method& method, const Model& model);
+
 // Prepares all that does not change from step to step (patterns, rest pose, factors). Throws InputError when the parts
-// cannot be combined (problem_of).
+// cannot be combined (problem_of), and when they cannot solve the model.
 std::unique_ptr<SearchRule> make_rule(const Method& method, const Model& model);
 
 // Returns the settings with those values that the method fixes whatever a scene says: only L-BFGS has a history, only
