@@ -18,6 +18,8 @@ ReportTable soft_slope_table(const BenchSetting& setting);
 ReportTable stack_table(const BenchSetting& setting);
 // touching_cost.cpp
 ReportTable touching_cost_table(const BenchSetting& setting);
+// touching_layers.cpp
+ReportTable layers_table(const BenchSetting& setting);
 // touching_row.cpp
 struct RowOfBodies {
   ReportTable table;
