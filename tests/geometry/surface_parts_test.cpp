@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/files/surface_file.h"
+#include "geometry/skins/file_corners.h"
 #include "support/bodies.h"
 #include "support/colored_files.h"
 
@@ -119,6 +120,35 @@ TEST_F(SurfaceFiles, TextureCoordinatesAreReadWithoutATextureAndMissingOnesAreNo
     } else {
       EXPECT_NEAR(place[0], 3 + 2 * p.x(), 1e-6);
       EXPECT_NEAR(place[1], 4 + 3 * p.y(), 1e-6);
+    }
+  }
+}
+
+TEST_F(SurfaceFiles, CornersKnowTheirPlaceInTheFileAfterWeldingAndRemeshing) {
+  // Two squares that share a side, and whose texture jumps there.
+  const ColoredSurface file = read("a.obj",
+                                   "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
+                                   "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 5 0\nvt 6 0\nvt 6 1\nvt 5 1\n"
+                                   "f 1/1 2/2 3/3 4/4\nf 2/5 5/6 6/7 3/8\n");
+  const WeldedSurface joined = welded(file.mesh, 1e-6, "a.obj");
+  const FileCorners corners = corners_in(file.mesh, joined);
+  const auto seams = file_seams(joined.mesh, corners, file);
+  ASSERT_EQ(seams.size(), 1u);
+  for (const std::int32_t v : seams.front()) EXPECT_NEAR(joined.mesh.points(v, 0), 1, 1e-12);
+  RemeshOptions options;
+  options.edge_length = 0.15;
+  options.lines = seams;
+  const RemeshedSurface fine = remeshed(joined.mesh, options, "a.obj");
+  const FileCorners fine_corners = corners_in(corners, fine);
+  ASSERT_EQ(Eigen::Index(fine_corners.size()), fine.mesh.triangles.rows());
+  for (Eigen::Index t = 0; t < fine.mesh.triangles.rows(); ++t) {
+    double middle = 0;
+    for (int k = 0; k < 3; ++k) middle += fine.mesh.points(fine.mesh.triangles(t, k), 0) / 3;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 p = fine.mesh.points.row(fine.mesh.triangles(t, k));
+      const Eigen::Vector2d at = texture_place(fine_corners[std::size_t(t)][std::size_t(k)], file);
+      EXPECT_NEAR(at.x(), p.x() + (middle > 1 ? 4 : 0), 1e-6);
+      EXPECT_NEAR(at.y(), p.y(), 1e-6);
     }
   }
 }

@@ -225,6 +225,7 @@ struct BodyDef {
   std::vector<HandleDef> handles;
   SolverDef solver;
   Pattern pattern = Pattern::none;
+  bool usual_pattern = false;          // the scene names no pattern, so that colours of a file have none over them
   std::optional<double> pattern_size;  // edge of the pattern's squares [m]
   std::optional<Vec3> color;           // replaces the shape's own colours [sRGB]
   std::optional<Vec3> back_color;      // of the back of cloth [sRGB]

@@ -206,14 +206,16 @@ std::optional<ClothDef> read_cloth(const ConfigTable& body) {
 }
 
 // Reads the printed pattern. The default is a grid on boxes and checks on cloth.
-Pattern read_pattern(const ConfigTable& table, const BodyDef& body) {
+Pattern read_pattern(const ConfigTable& table, BodyDef& body) {
   const std::string usual = "usual";
   std::vector<std::string> words = all_names<Pattern>();
   words.insert(words.begin(), usual);
-  const std::string word =
-      table.choice({"pattern", "",
-                    "printed squares that show how it is strained; usual: a grid on boxes, checks on cloth, else none"},
-                   usual, {words});
+  const std::string word = table.choice({"pattern", "",
+                                         "printed squares that show how it is strained; usual: a grid on boxes, checks "
+                                         "on cloth without colours of a file, "
+                                         "else none"},
+                                        usual, {words});
+  body.usual_pattern = word == usual;
   if (word == usual) return body.box ? Pattern::grid : body.cloth ? Pattern::checks : Pattern::none;
   const Pattern pattern = *value_named<Pattern>(word);
   if (!body.shape.empty() && pattern != Pattern::none)
@@ -390,7 +392,7 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
                                          "color here; file: the file's where "
                                          "it has some; body: color"},
                                         body.colors);
-  if (table.has("colors") && !table.has("surface"))
+  if (table.has("colors") && !table.has("surface") && !(body.cloth && !body.cloth->surface.empty()))
     table.complain("colors", "colors: of a 'surface'; there is none here");
   body.gloss = table.number_if_given({"gloss", "", "of the uncovered surface: 0 matt to 1 wet [0.25; cloth 0.08]"},
                                      Range::between(0, 1));
