@@ -1,16 +1,18 @@
-// Tests that cloth from a file keeps what the file says: colours and textures.
+// Tests that cloth from a file keeps what the file says: colours and textures, and names of parts.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
 #include "film/pictures/drawn_cloth.h"
 #include "scene/building/assemble.h"
 #include "scene/building/drawn_body.h"
 #include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 #include "support/colored_files.h"
+#include "support/scene_text.h"
 
 namespace supple {
 namespace cloth_from_file_test {
@@ -74,11 +76,34 @@ class ClothFromFile : public ::testing::Test {
   DrawnBody drawn_of(const std::string& cloth, const std::string& keys = "") const {
     return drawn_bodies({body_of(cloth, keys)}).front();
   }
+  std::string refusal_of(const std::string& cloth, const std::string& keys = "") const {
+    try {
+      body_of(cloth, keys);
+      return "nothing";
+    } catch (const InputError& error) {
+      EXPECT_GT(error.problems().front().place.line, 0);
+      return error.problems().front().message;
+    }
+  }
+  std::vector<Vec3> held(const std::string& select, const std::string& cloth = "surface = \"sheet.obj\"") const {
+    const Body body = body_of(cloth, "[[body.handles]]\nname = \"pins\"\nselect = { " + select + " }\n");
+    std::vector<Vec3> places;
+    for (const std::int32_t v : body.description.handles.front().vertices)
+      places.push_back(body.unplaced.row(v).transpose());
+    return places;
+  }
+  std::string refusal_to_hold(const std::string& select) const {
+    return refusal_of("surface = \"sheet.obj\"", "[[body.handles]]\nname = \"pins\"\nselect = { " + select + " }\n");
+  }
   test::TemporaryFolder folder_;
 };
 
 bool has(const std::vector<std::string>& notes, const std::string& part) {
   return std::ranges::any_of(notes, [&](const std::string& note) { return note.find(part) != std::string::npos; });
+}
+
+void expect_part(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << "found: " << text;
 }
 
 // Checks that each drawn triangle lies on one side of the seam, and has the texture's places of its corners there.
@@ -172,6 +197,72 @@ TEST_F(ClothFromFile, ColoursOfVerticesStayAtTheirPlaces) {
   EXPECT_FALSE(drawn.skin.color.empty());
 }
 
+TEST_F(ClothFromFile, HandlesTakeGroupsObjectsAndMaterialsByTheirNames) {
+  const std::vector<Vec3> left = held("group = \"left\""), right = held("group = \"right side\"");
+  EXPECT_EQ(left.size(), std::size_t((cells + 1) * (cells / 2 + 1)));
+  for (const Vec3& p : left) EXPECT_LE(p.x(), 0.5);
+  EXPECT_EQ(right.size(), left.size());
+  for (const Vec3& p : right) EXPECT_GE(p.x(), 0.5);
+  expect_part(refusal_to_hold("group = \"print\""), "every vertex of body 'sheet' is held");  // its only material
+  const std::vector<Vec3> rim = held("group = \"left\", border = true");
+  EXPECT_EQ(rim.size(), std::size_t(2 * cells + 1));
+  // The border between two groups stays a line where the triangles are new.
+  const std::vector<Vec3> fine = held("group = \"left\"", "surface = \"sheet.obj\", edge = 0.05");
+  EXPECT_GT(fine.size(), 150u);
+  EXPECT_NEAR(std::ranges::max(fine, {}, [](const Vec3& p) { return p.x(); }).x(), 0.5, 1e-9);
+}
+
+TEST_F(ClothFromFile, ANameThatIsNotThereIsRefusedWithThoseThatAre) {
+  const std::string message = refusal_to_hold("group = \"lefd\"");
+  expect_part(message, "its file names nothing 'lefd'; did you mean 'left'?; it names 'left', 'print', 'right side'");
+  test::write_text(folder_.path / "sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  expect_part(refusal_to_hold("group = \"left\""), "not made of a file that names groups");
+  expect_part(refusal_to_hold("color = \"#ffffff\""), "not made of a file that has colours");
+}
+
+TEST_F(ClothFromFile, HandlesTakeColoursOfTexturesAndNameTheNearestWhereThereIsNone) {
+  std::vector<std::uint8_t> rgb(3 * 8 * 8, 255);
+  for (std::size_t i = 0; i < rgb.size(); i += 3)
+    if (i / 3 % 8 < 1) rgb[i + 1] = rgb[i + 2] = 20;  // the left eighth of the texture is red
+  write_png(folder_.path / "print.png", 8, 8, rgb);
+  const std::vector<Vec3> red = held("color = \"#ff1414\", tolerance = 0.01");
+  EXPECT_EQ(red.size(), std::size_t((cells + 1) * cells / 2));  // u = x / 4 below 1/8, and where 1 - x / 4 is not 1
+  for (const Vec3& p : red) EXPECT_LT(p.x(), 0.5);
+  expect_part(refusal_to_hold("color = \"#ff3c14\", tolerance = 0.1"),
+              "the nearest colour at its vertices is \"#ff1414\", which tolerance = 0.16 takes");
+  EXPECT_EQ(held("color = \"#ff3c14\", tolerance = 0.16").size(), red.size());
+}
+
+TEST_F(ClothFromFile, SolidsAreHeldByNamesAndColoursNearTheirSurface) {
+  std::string text = test::obj_text(test::sphere_surface(0.5, 32, 16));
+  std::string upper = "g top\n", lower = "g rest\n", head;
+  const TriMesh ball = test::sphere_surface(0.5, 32, 16);
+  for (Eigen::Index t = 0; t < ball.triangles.rows(); ++t) {
+    double y = 0;
+    for (int k = 0; k < 3; ++k) y += ball.points(ball.triangles(t, k), 1) / 3;
+    (y > 0.3 ? upper : lower) +=
+        fmt::format("f {} {} {}\n", ball.triangles(t, 0) + 1, ball.triangles(t, 1) + 1, ball.triangles(t, 2) + 1);
+  }
+  head = text.substr(0, text.find("f "));
+  test::write_text(folder_.path / "ball.obj", head + upper + lower);
+  test::write_text(folder_.path / "ball.ply", test::ply_text(ball, [](const Vec3& p) {
+                     return p.y() > 0.3 ? std::array{255, 0, 0} : std::array{0, 0, 255};
+                   }));
+  for (const char* by :
+       {"surface = \"ball.obj\"\n[[body.handles]]\nname = \"top\"\nselect = { group = \"top\" }\n",
+        "surface = \"ball.ply\"\n[[body.handles]]\nname = \"top\"\nselect = { color = \"#ff0000\" }\n"}) {
+    test::write_text(folder_.path / "b.toml", fmt::format("[[body]]\nmaterial = \"jelly\"\nvertices = 2000\n{}", by));
+    const Body body = assemble(load_scene(folder_.path / "b.toml", test::assets, {})).front();
+    const std::vector<std::int32_t>& vertices = body.description.handles.front().vertices;
+    EXPECT_GT(vertices.size(), 40u);
+    EXPECT_LT(vertices.size(), 400u);
+    for (const std::int32_t v : vertices) {
+      EXPECT_GT(body.unplaced(v, 1), 0.2);
+      EXPECT_GT(body.unplaced.row(v).norm(), 0.35);
+    }
+  }
+}
+
 TEST_F(ClothFromFile, ATextureInWhichEachTriangleLiesApartHasNoLinesThatStay) {
   std::string vertices, faces;
   int corners = 0;
@@ -194,6 +285,18 @@ TEST_F(ClothFromFile, ATextureInWhichEachTriangleLiesApartHasNoLinesThatStay) {
   test::write_text(folder_.path / "sheet.obj", "mtllib sheet.mtl\n" + vertices + "usemtl print\n" + faces);
   EXPECT_TRUE(
       has(body_of("surface = \"sheet.obj\", edge = 0.06").notes, "along 176 edges between 128 triangles: too many"));
+}
+
+TEST_F(ClothFromFile, MistakesAreNamed) {
+  const auto problem = [](const std::string& cloth, const std::string& keys = "") {
+    const std::vector<std::string> found =
+        test::problems_of("[[body]]\nmaterial = \"cotton\"\ncloth = { " + cloth + " }\n" + keys);
+    return found.empty() ? "nothing" : found.front();
+  };
+  const std::string ball = "surface = \"surfaces/ball.obj\"";
+  const std::string handle = "[[body.handles]]\nname = \"pins\"\nselect = { ";
+  expect_part(problem(ball, handle + "border = true, tolerance = 0.2 }\n"), "tolerance: of a color");
+  expect_part(problem(ball, handle + "group = \"a\", color = \"#ff0000\" }\n"), "a selection is one of");
 }
 
 }  // namespace cloth_from_file_test

@@ -59,6 +59,7 @@ struct Body {
   // Colours of `skin`, or of a cloth's triangles; null where the body's own are drawn.
   std::shared_ptr<const SurfaceColors> colors;
   std::shared_ptr<const SurfaceColors> file_colors;  // the same, also where they are not drawn; null: the file has none
+  std::shared_ptr<const SurfaceParts> parts;         // of the same triangles; null: unnamed, or nothing asks for them
   Shape shape;                                       // the shape of a body made from one, in the file's frame
   Positions unplaced;                                // the rest positions of the mesh in the file's frame
   std::uint64_t seed = 0;                            // of its random start

@@ -86,6 +86,7 @@ std::vector<std::array<std::int32_t, 2>> lines_that_stay(const FileCloth& cloth,
 void keep_what_is_said(const BodyDef& def, const FileCloth& cloth, const ColoredSurface& file, Body& body) {
   if (!cloth.corners.empty()) {
     body.file_colors = colors_on(cloth.corners, file);
+    body.parts = parts_on(cloth.corners, file);
   }
   choose_colors(def, def.cloth->surface, body);
 }

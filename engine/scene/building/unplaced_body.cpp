@@ -39,6 +39,7 @@ Body body_of_surface(const BodyDef& def, const SlowWork& work) {
   body.files = {read.sources[def.piece]};
   body.regions = Shape{}.regions;
   take(body, mesh_of_surface({solid, read.touching}, wanted_mesh(body, def), work));
+  body.parts = read.parts[def.piece];
   body.file_colors = read.colors[def.piece];
   choose_colors(def, def.surface, body);
   return body;
@@ -84,7 +85,8 @@ std::string key_of(const BodyDef& def) {
                                       : fmt::format("{}{}#{}{}", def.shape.string(), def.surface.string(), def.vertices,
                                                     def.surface_options.text());
   if (!def.surface.empty())
-    key += fmt::format(" {} {} {} {}", name_of(def.pieces), def.piece, name_of(def.colors), def.color.has_value());
+    key += fmt::format(" {} {} {} {} {}", name_of(def.pieces), def.piece, name_of(def.colors), def.color.has_value(),
+                       def.read_surface->parts[def.piece] != nullptr);
   return key;
 }
 

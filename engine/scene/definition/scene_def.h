@@ -28,10 +28,11 @@
 
 namespace supple {
 
-// Selects vertices of a body by a box, ball, half space or region, by their numbers, or as those nearest to points.
-// Coordinates are relative to the rest bounding box (0 to 1 along each axis).
+// Selects vertices of a body by a box, ball, half space or region, by their numbers, as those nearest to points, or by
+// what the file of a surface says of them: the name of a group or material, or a colour. Coordinates are relative to
+// the rest bounding box (0 to 1 along each axis).
 struct Selection {
-  enum class Kind { region, box, sphere, plane, vertices, nearest } kind = Kind::box;
+  enum class Kind { region, box, sphere, plane, vertices, nearest, group, color } kind = Kind::box;
   std::string region;
   std::vector<int> vertices;                          // numbers, counted from 1
   Vec3 lower = Vec3(0, 0, 0), upper = Vec3(1, 1, 1);  // box
@@ -39,6 +40,9 @@ struct Selection {
   double radius = 0;                                  // sphere; relative to the longest side
   Vec3 normal = Vec3(0, 1, 0);                        // plane: picks the side that it points to
   std::vector<Vec3> points;                           // nearest
+  std::string group;                                  // a name in the file
+  Vec3 color = Vec3(0, 0, 0);                         // [sRGB]
+  double tolerance = 0.1;                             // of each channel of the colour
   bool border = false;                                // of these, only those on the open border of a cloth
   FilePlace place;                                    // in the file, for messages once the mesh is known
 };
@@ -48,7 +52,8 @@ struct Names<Selection::Kind> {
   using Kind = Selection::Kind;
   static constexpr std::array table = {Name{Kind::region, "region"},     Name{Kind::box, "box"},
                                        Name{Kind::sphere, "sphere"},     Name{Kind::plane, "plane"},
-                                       Name{Kind::vertices, "vertices"}, Name{Kind::nearest, "nearest"}};
+                                       Name{Kind::vertices, "vertices"}, Name{Kind::nearest, "nearest"},
+                                       Name{Kind::group, "group"},       Name{Kind::color, "color"}};
 };
 
 struct MotionKey {

@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "scene/reading/model_scene.h"
+#include "scene/reading/selection_reader.h"
 #include "scene/reading/table_readers.h"
 
 namespace supple {
@@ -26,65 +27,6 @@ std::vector<MotionKey> read_keys(const ConfigTable& table, const char* turn) {
 }
 
 namespace {
-
-Selection read_selection(const ConfigTable& handle) {
-  Selection s;
-  s.place = handle.place("select");
-  const auto table = handle.table(
-      {"select", "", "which vertices, by exactly one of region, box, sphere, plane, vertices, nearest, or by border"},
-      "required");
-  if (!table) {
-    if (!handle.has("select"))
-      handle.complain("'select' is missing: such as select = { box = [[0, 0, 0], [1, 0.1, 1]] }");
-    return s;
-  }
-  using Kind = Selection::Kind;
-  const auto key_of = [](Kind kind, const char* meaning) { return Key{name_of(kind).data(), "", meaning}; };
-  int given = 0;
-  const auto pick = [&](Kind kind) {
-    ++given;
-    s.kind = kind;
-  };
-  if (table->has(name_of(Kind::region).data())) {
-    pick(Kind::region);
-    s.region = table->text(key_of(Kind::region, "all vertices of elements with this tag"), std::nullopt);
-  }
-  if (table->has(name_of(Kind::box).data())) {
-    pick(Kind::box);
-    const std::vector<Vec3> corners =
-        table->vectors(key_of(Kind::box, "lower and upper corner, relative to the rest bounding box (0 to 1)"), 2);
-    if (corners.size() == 2) {
-      s.lower = corners[0];
-      s.upper = corners[1];
-      if ((s.lower.array() > s.upper.array()).any())
-        table->complain("box", "box: the first corner must be the lower one");
-    }
-  }
-  if (const auto sphere = table->table(key_of(Kind::sphere, "vertices in a ball"))) {
-    pick(Kind::sphere);
-    s.center = sphere->vector({"center", "", "relative to the rest bounding box (0 to 1)"}, std::nullopt);
-    s.radius = sphere->number({"radius", "", "relative to the longest side"}, std::nullopt, Range::positive());
-  }
-  if (const auto plane = table->table(key_of(Kind::plane, "vertices on one side of a plane"))) {
-    pick(Kind::plane);
-    s.center = plane->vector({"point", "", "relative to the rest bounding box (0 to 1)"}, std::nullopt);
-    s.normal = plane->vector({"normal", "", "points to the side that is picked"}, std::nullopt);
-    if (s.normal.norm() < 1e-9) plane->complain("normal", "normal: must not be zero");
-  }
-  s.vertices =
-      table->integers(key_of(Kind::vertices, "numbers of vertices, counted from 1 in the order of the mesh"), 1);
-  if (table->has(name_of(Kind::vertices).data())) pick(Kind::vertices);
-  if (table->has(name_of(Kind::nearest).data())) {
-    pick(Kind::nearest);
-    s.points = table->vectors(
-        key_of(Kind::nearest, "points, relative to the rest bounding box (0 to 1): the vertex nearest to each"), 0);
-  }
-  s.border =
-      table->boolean({"border", "", "true: only vertices on the open border of a cloth; alone: all of them"}, false);
-  if (s.border && given == 0) pick(Kind::box);  // the whole box
-  if (given != 1) table->complain(fmt::format("a selection is one of {}, or border", word_list(all_names<Kind>())));
-  return s;
-}
 
 std::optional<AttachDef> read_attach(const ConfigTable& handle) {
   const auto table = handle.table({"attach", "", "what the vertices go with: a collider, or another body"});
