@@ -1,4 +1,5 @@
-// Tests that cloth from a file keeps what the file says: colours and textures, and names of parts.
+// Tests that cloth from a file keeps what the file says: colours and textures, names of parts, the flat pieces that its
+// texture coordinates are.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +9,9 @@
 #include "base/error.h"
 #include "film/pictures/drawn_cloth.h"
 #include "scene/building/assemble.h"
+#include "scene/building/cloth_cut.h"
 #include "scene/building/drawn_body.h"
+#include "scene/building/warnings.h"
 #include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 #include "support/colored_files.h"
@@ -263,7 +266,77 @@ TEST_F(ClothFromFile, SolidsAreHeldByNamesAndColoursNearTheirSurface) {
   }
 }
 
-TEST_F(ClothFromFile, ATextureInWhichEachTriangleLiesApartHasNoLinesThatStay) {
+TEST_F(ClothFromFile, ACutIsAtRestAsItLiesInTheTexture) {
+  // A unit of the texture is 8 m, so that the flat sheet has twice the lengths of the placed one.
+  const Body body = body_of("surface = \"sheet.obj\", cut = \"texture\", cut_scale = 8");
+  double area = 0, mass = 0;
+  const Positions& rest = body.description.mesh.rest;
+  for (const FlatTriangle& triangle : body.description.cloth) {
+    area += triangle.area();
+    for (int k = 0; k < 2; ++k) {
+      const Vec3 edge = rest.row(triangle.corner[std::size_t(k) + 1]) - rest.row(triangle.corner[0]);
+      EXPECT_NEAR(triangle.edges[k], 2 * edge.y(), 1e-5);       // the warp is along v
+      EXPECT_NEAR(triangle.edges[2 + k], -2 * edge.x(), 1e-5);  // also on the half that is mirrored in the texture
+    }
+  }
+  for (const double one : body.description.point_mass) mass += one;
+  EXPECT_NEAR(area, 4, 1e-5);
+  EXPECT_NEAR(mass, 4 * 0.124, 1e-5);
+  EXPECT_TRUE(has(body.notes, "64 of its 128 triangles are mirrored"));
+  EXPECT_TRUE(has(body.notes, "stretched against this cut by 0.50 at least, 0.50 in the median and 0.50 at most"));
+}
+
+TEST_F(ClothFromFile, WithoutAScaleACutHasTheAreaOfThePlacedSurfaceAndGrainTurnsInItsPlane) {
+  const Body body = body_of("surface = \"sheet.obj\", cut = \"texture\", grain = [1, 0, 0]", "size = 3\n");
+  EXPECT_NEAR(cut_scale(body), 12, 1e-5);
+  const Positions& rest = body.description.mesh.rest;
+  for (const FlatTriangle& triangle : body.description.cloth) {
+    for (int k = 0; k < 2; ++k) {
+      const Vec3 edge = rest.row(triangle.corner[std::size_t(k) + 1]) - rest.row(triangle.corner[0]);
+      EXPECT_NEAR(std::abs(triangle.edges[k]), std::abs(edge.x()), 1e-4);
+    }
+  }
+  EXPECT_FALSE(std::ranges::any_of(warnings(SceneDef(), {body}),
+                                   [](const Warning& one) { return one.kind == WarningKind::cut; }));
+}
+
+TEST_F(ClothFromFile, NewTrianglesOfACutLieInItsPieces) {
+  const Body body = body_of("surface = \"sheet.obj\", edge = 0.05, cut = \"texture\", cut_scale = 4");
+  const CutStretch stretch = cut_stretch(body);
+  EXPECT_NEAR(stretch.least, 1, 1e-4);
+  EXPECT_NEAR(stretch.largest, 1, 1e-4);
+  double area = 0;
+  for (const FlatTriangle& triangle : body.description.cloth) area += triangle.area();
+  EXPECT_NEAR(area, 1, 1e-3);
+}
+
+TEST_F(ClothFromFile, AWarningTellsOfACutThatDoesNotFit) {
+  const auto cut_warnings = [&](const std::string& scale) {
+    const SceneDef scene = scene_with("surface = \"sheet.obj\", cut = \"texture\", cut_scale = " + scale);
+    std::vector<std::string> found;
+    for (const Warning& one : warnings(scene, assemble(scene)))
+      if (one.kind == WarningKind::cut) found.push_back(one.problem.message);
+    return found;
+  };
+  EXPECT_TRUE(cut_warnings("4").empty());
+  EXPECT_TRUE(cut_warnings("3").empty());
+  ASSERT_EQ(cut_warnings("2.5").size(), 1u);
+  expect_part(cut_warnings("2.5").front(), "100 % of its triangles are stretched beyond 1.5");
+  expect_part(cut_warnings("2.5").front(), "cut_scale = 4 would give the cut the area of the surface");
+}
+
+TEST_F(ClothFromFile, ATextureThatIsNoCutIsRefused) {
+  write({.places = false});
+  expect_part(refusal_of("surface = \"sheet.obj\", cut = \"texture\""), "all triangles have no texture coordinates");
+  write({.right_places = false});
+  expect_part(refusal_of("surface = \"sheet.obj\", cut = \"texture\""),
+              "64 of 128 triangles have no texture coordinates, the first at (0.583, 0.0417, 0)");
+  write({.right = {0.3, 0}});
+  expect_part(refusal_of("surface = \"sheet.obj\", cut = \"texture\""),
+              "64 of 128 triangles have no area in the texture, the first at (0.583, 0.0417, 0)");
+}
+
+TEST_F(ClothFromFile, ATextureInWhichEachTriangleLiesApartKeepsNewTrianglesFromACut) {
   std::string vertices, faces;
   int corners = 0;
   for (int j = 0; j < cells; ++j) {
@@ -285,6 +358,9 @@ TEST_F(ClothFromFile, ATextureInWhichEachTriangleLiesApartHasNoLinesThatStay) {
   test::write_text(folder_.path / "sheet.obj", "mtllib sheet.mtl\n" + vertices + "usemtl print\n" + faces);
   EXPECT_TRUE(
       has(body_of("surface = \"sheet.obj\", edge = 0.06").notes, "along 176 edges between 128 triangles: too many"));
+  expect_part(refusal_of("surface = \"sheet.obj\", edge = 0.06, cut = \"texture\""),
+              "without edge the triangles are the file's");
+  EXPECT_NEAR(cut_stretch(body_of("surface = \"sheet.obj\", cut = \"texture\"")).largest, 1, 1e-4);
 }
 
 TEST_F(ClothFromFile, MistakesAreNamed) {
@@ -293,7 +369,12 @@ TEST_F(ClothFromFile, MistakesAreNamed) {
         test::problems_of("[[body]]\nmaterial = \"cotton\"\ncloth = { " + cloth + " }\n" + keys);
     return found.empty() ? "nothing" : found.front();
   };
-  const std::string ball = "surface = \"surfaces/ball.obj\"";
+  const std::string grid = "extent = [1, 1], cells = [2, 2]", ball = "surface = \"surfaces/ball.obj\"";
+  for (const char* key : {"cut = \"texture\"", "cut_scale = 2"})
+    expect_part(problem(grid + ", " + key), "of a cloth with a surface; there is none here");
+  expect_part(problem(ball + ", cut_scale = 2"), "cut_scale: of cut = \"texture\"");
+  expect_part(problem(ball + ", cut = \"texture\", grain = [0, 0, 1]"), "it lies in the texture, as [u, v, 0]");
+  expect_part(problem(ball + ", cut = \"pattern\""), "surface or texture");
   const std::string handle = "[[body.handles]]\nname = \"pins\"\nselect = { ";
   expect_part(problem(ball, handle + "border = true, tolerance = 0.2 }\n"), "tolerance: of a color");
   expect_part(problem(ball, handle + "group = \"a\", color = \"#ff0000\" }\n"), "a selection is one of");

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/text.h"
+#include "scene/building/cloth_cut.h"
 #include "scene/building/overlaps.h"
 #include "scene/building/selected_vertices.h"
 #include "scene/building/skin_offsets.h"
@@ -249,6 +250,7 @@ std::vector<Body> assemble(const SceneDef& scene, const SlowWork& work) {
       note_drag(scene, body);
       if (!def.cloth) body.volume = quality(body.description.mesh).volume;
       set_values(body, scene, problems);
+      if (!body.flat.empty()) body.notes.push_back(cut_text(body));
       if (def.pattern_size && *def.pattern_size < 1e-3 * bounds_of(body.description.mesh.rest).diagonal()) {
         problems.push_back(
             at(def.place, fmt::format("pattern_size of body '{}' is below a thousandth of its size", def.name)));

@@ -55,6 +55,9 @@ struct Body {
   double volume = 0;                 // of its tetrahedra at rest [m^3]
   bool holds_gas = false;            // its surface was found to be closed, which a pressure needs
   ClothMesh cloth;
+  // By triangle and corner: the place of a cloth in its texture, in which it lies flat; empty: each triangle is at rest
+  // as it lies.
+  std::vector<std::array<Eigen::Vector2d, 3>> flat;
   TriMesh skin;  // the surface of a body made from one, in the file's frame
   // Colours of `skin`, or of a cloth's triangles; null where the body's own are drawn.
   std::shared_ptr<const SurfaceColors> colors;

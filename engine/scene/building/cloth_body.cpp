@@ -9,6 +9,7 @@
 #include "geometry/skins/file_corners.h"
 #include "geometry/triangles/remesh.h"
 #include "geometry/triangles/welded_surface.h"
+#include "scene/building/cloth_cut.h"
 
 namespace supple {
 namespace {
@@ -68,8 +69,8 @@ struct FileCloth {
 // Returns the edges that stay as lines when the triangles become new ones: seams of the texture, and borders between
 // parts. Where so many would stay that new triangles could not have the wanted size, as in a texture that has a place
 // of its own for each triangle, there are none.
-std::vector<std::array<std::int32_t, 2>> lines_that_stay(const FileCloth& cloth, const ColoredSurface& file,
-                                                         Body& body) {
+std::vector<std::array<std::int32_t, 2>> lines_that_stay(const BodyDef& def, const FileCloth& cloth,
+                                                         const ColoredSurface& file, Body& body) {
   if (cloth.corners.empty()) return {};
   std::vector<std::array<std::int32_t, 2>> lines = file_seams(cloth.surface, cloth.corners, file);
   const Eigen::Index most = cloth.surface.triangles.rows() * 3 / 5;  // two of five edges of a closed surface
@@ -78,6 +79,10 @@ std::vector<std::array<std::int32_t, 2>> lines_that_stay(const FileCloth& cloth,
       "its texture has seams, or its parts meet, along {} edges between {} triangles: too many to stay where "
       "triangles become new",
       lines.size(), cloth.surface.triangles.rows());
+  if (def.cloth->cut == ClothCut::texture)
+    throw InputError({{def.cloth->cut_place,
+                       fmt::format("edge with cut = \"texture\": in '{}' {}; without edge the triangles are the file's",
+                                   def.cloth->surface.filename().string(), many)}});
   body.notes.push_back(many + ", so that colours and names there are only near to where they were");
   return {};
 }
@@ -89,6 +94,7 @@ void keep_what_is_said(const BodyDef& def, const FileCloth& cloth, const Colored
     body.parts = parts_on(cloth.corners, file);
   }
   choose_colors(def, def.cloth->surface, body);
+  if (def.cloth->cut == ClothCut::texture) body.flat = flat_cut(cloth.surface, cloth.corners, file, def, body.notes);
 }
 
 // Reads any triangles for cloth. Vertices at the same place become one, so that seams are sewn.
@@ -109,7 +115,7 @@ TriMesh surface_for_cloth(const BodyDef& def, Body& body) {
   made.surface = std::move(joined.mesh);
   body.files = {source_of(cloth.surface, made.surface)};
   if (cloth.edge) {
-    RemeshedSurface fine = of_edge(made.surface, lines_that_stay(made, file, body), *cloth.edge, def, body);
+    RemeshedSurface fine = of_edge(made.surface, lines_that_stay(def, made, file, body), *cloth.edge, def, body);
     if (!made.corners.empty()) made.corners = corners_in(made.corners, fine);
     made.surface = std::move(fine.mesh);
   }

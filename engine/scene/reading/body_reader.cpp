@@ -107,6 +107,27 @@ void read_springs(const ConfigTable& table, ClothDef& cloth) {
   cloth.bend = table.number({"bend", "N/m", "of the springs that skip a vertex"}, 0.0, Range::at_least(0));
 }
 
+// Reads in which shape the triangles of a surface are at rest.
+void read_cut(const ConfigTable& table, ClothDef& cloth) {
+  cloth.cut = table.word<ClothCut>(
+      {"cut", "",
+       "the shape at rest of each triangle: surface: as it lies in the file; texture: as it lies flat in the texture"},
+      cloth.cut);
+  cloth.cut_place = table.place("cut");
+  cloth.cut_scale = table.number_if_given(
+      {"cut_scale", "m",
+       "of one unit of texture coordinates, on the finished body; without it the cut has the area of the surface"},
+      Range::above(0, 1e6));
+  for (const char* key : {"cut", "cut_scale"}) {
+    if (table.has(key) && cloth.surface.empty())
+      table.complain(key, fmt::format("{}: of a cloth with a surface; there is none here", key));
+  }
+  if (table.has("cut_scale") && cloth.cut != ClothCut::texture)
+    table.complain("cut_scale", "cut_scale: of cut = \"texture\"; without it each triangle is at rest as it lies");
+  if (cloth.cut == ClothCut::texture && cloth.grain.z() != 0)
+    table.complain("grain", "grain: with cut = \"texture\" it lies in the texture, as [u, v, 0]");
+}
+
 std::optional<ClothDef> read_cloth(const ConfigTable& body) {
   const auto table = body.table({"cloth", "", "a grid, or the triangles of a file; of a material, or of springs"});
   if (!table) return std::nullopt;
@@ -134,6 +155,7 @@ std::optional<ClothDef> read_cloth(const ConfigTable& body) {
   cloth.grain = table->vector({"grain", "", "direction of the warp, in the frame of the file or grid; any length"},
                               Vec3(0, 1, 0));
   if (cloth.grain.norm() < 1e-9) table->complain("grain", "grain: must not be zero");
+  read_cut(*table, cloth);
   const bool has_springs = table->has("stretch") || (table->has("bend") && !body.has("material"));
   if (has_springs) read_springs(*table, cloth);
   if (has_springs && !cloth.surface.empty())
