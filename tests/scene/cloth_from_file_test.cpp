@@ -1,5 +1,5 @@
 // Tests that cloth from a file keeps what the file says: colours and textures, names of parts, the flat pieces that its
-// texture coordinates are.
+// texture coordinates are, and borders that are sewn.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -363,6 +363,20 @@ TEST_F(ClothFromFile, ATextureInWhichEachTriangleLiesApartKeepsNewTrianglesFromA
   EXPECT_NEAR(cut_stretch(body_of("surface = \"sheet.obj\", cut = \"texture\"")).largest, 1, 1e-4);
 }
 
+TEST_F(ClothFromFile, BordersThatAreNearAreSewn) {
+  write({.gap = 0.002});
+  const Body open = body_of("surface = \"sheet.obj\""), sewn = body_of("surface = \"sheet.obj\", sew = 0.003");
+  EXPECT_EQ(open.description.mesh.rest.rows() - sewn.description.mesh.rest.rows(), cells + 1);
+  EXPECT_EQ(sewn.description.cloth.size(), open.description.cloth.size());
+  EXPECT_TRUE(has(sewn.notes,
+                  "9 border vertices were sewn to others, which were up to 0.002 m apart; 32 border "
+                  "vertices remain"));
+  EXPECT_TRUE(has(body_of("surface = \"sheet.obj\", sew = 0.001").notes, "sew = 0.001 m joins nothing"));
+  // The distance is that of the finished body, and what is sewn has new triangles as one sheet.
+  const Body large = body_of("surface = \"sheet.obj\", sew = 0.03, edge = 0.5", "size = 10\n");
+  EXPECT_TRUE(has(large.notes, "9 border vertices were sewn"));
+}
+
 TEST_F(ClothFromFile, MistakesAreNamed) {
   const auto problem = [](const std::string& cloth, const std::string& keys = "") {
     const std::vector<std::string> found =
@@ -370,7 +384,7 @@ TEST_F(ClothFromFile, MistakesAreNamed) {
     return found.empty() ? "nothing" : found.front();
   };
   const std::string grid = "extent = [1, 1], cells = [2, 2]", ball = "surface = \"surfaces/ball.obj\"";
-  for (const char* key : {"cut = \"texture\"", "cut_scale = 2"})
+  for (const char* key : {"cut = \"texture\"", "cut_scale = 2", "sew = 0.1"})
     expect_part(problem(grid + ", " + key), "of a cloth with a surface; there is none here");
   expect_part(problem(ball + ", cut_scale = 2"), "cut_scale: of cut = \"texture\"");
   expect_part(problem(ball + ", cut = \"texture\", grain = [0, 0, 1]"), "it lies in the texture, as [u, v, 0]");

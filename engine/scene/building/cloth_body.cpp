@@ -8,6 +8,7 @@
 #include "geometry/files/surface_file.h"
 #include "geometry/skins/file_corners.h"
 #include "geometry/triangles/remesh.h"
+#include "geometry/triangles/sewn_border.h"
 #include "geometry/triangles/welded_surface.h"
 #include "scene/building/cloth_cut.h"
 
@@ -57,6 +58,29 @@ RemeshedSurface of_edge(const TriMesh& surface, const std::vector<std::array<std
     body.notes.push_back(
         fmt::format("its area changed by {:.2g} %: details finer than the edge are gone", -100 * lost));
   return remade;
+}
+
+// Joins vertices on the border that lie apart, as the scene asks.
+void sew(const BodyDef& def, TriMesh& surface, Body& body) {
+  const double scale = metres_of_unit(surface, def);
+  SewnSurface sewn = sewn_border(surface, *def.cloth->sew / scale);
+  surface = std::move(sewn.mesh);
+  if (sewn.joined == 0) {
+    body.notes.push_back(fmt::format(
+        "sew = {:g} m joins nothing: {}", *def.cloth->sew,
+        sewn.left == 0
+            ? "it has no border"
+            : fmt::format("no two of its {} border vertices are that near, except along an edge", sewn.left)));
+    return;
+  }
+  body.notes.push_back(fmt::format(
+      "{} border vertices were sewn to others, which were up to {:.2g} m apart; {}", sewn.joined, scale * sewn.furthest,
+      sewn.left == 0 ? "no border remains" : fmt::format("{} border vertices remain", sewn.left)));
+  if (sewn.beside > 0)
+    body.notes.push_back(fmt::format(
+        "{} of these lie within {:g} m of another border, but between its vertices: slits remain there, because only "
+        "vertices are sewn to each other",
+        sewn.beside, *def.cloth->sew));
 }
 
 // Holds the triangles of a cloth from a file, and where their corners come from; nowhere where the file says nothing of
@@ -113,6 +137,7 @@ TriMesh surface_for_cloth(const BodyDef& def, Body& body) {
   if (!file.colors.empty() || !file.places.empty() || !file.parts.of.empty())
     made.corners = corners_in(file.mesh, joined);
   made.surface = std::move(joined.mesh);
+  if (cloth.sew) sew(def, made.surface, body);
   body.files = {source_of(cloth.surface, made.surface)};
   if (cloth.edge) {
     RemeshedSurface fine = of_edge(made.surface, lines_that_stay(def, made, file, body), *cloth.edge, def, body);

@@ -136,6 +136,7 @@ struct ClothDef {
   ClothCut cut = ClothCut::surface;
   std::optional<double> cut_scale;          // of one unit of the texture; nothing: as much as keeps the area [m]
   FilePlace cut_place;                      // in the file, for messages once the surface is known
+  std::optional<double> sew;                // of vertices on the border that become one, the distance at most [m]
   std::optional<FabricDef> fabric;          // nothing: it is made of springs
   double stretch = 0, shear = 0, bend = 0;  // stiffness of a spring [N/m]
 };

@@ -107,7 +107,7 @@ void read_springs(const ConfigTable& table, ClothDef& cloth) {
   cloth.bend = table.number({"bend", "N/m", "of the springs that skip a vertex"}, 0.0, Range::at_least(0));
 }
 
-// Reads in which shape the triangles of a surface are at rest.
+// Reads in which shape the triangles of a surface are at rest, and how its border is sewn.
 void read_cut(const ConfigTable& table, ClothDef& cloth) {
   cloth.cut = table.word<ClothCut>(
       {"cut", "",
@@ -118,7 +118,10 @@ void read_cut(const ConfigTable& table, ClothDef& cloth) {
       {"cut_scale", "m",
        "of one unit of texture coordinates, on the finished body; without it the cut has the area of the surface"},
       Range::above(0, 1e6));
-  for (const char* key : {"cut", "cut_scale"}) {
+  cloth.sew = table.number_if_given(
+      {"sew", "m", "vertices on the border of a surface that are within this distance become one"},
+      Range::above(0, 1e6));
+  for (const char* key : {"cut", "cut_scale", "sew"}) {
     if (table.has(key) && cloth.surface.empty())
       table.complain(key, fmt::format("{}: of a cloth with a surface; there is none here", key));
   }
