@@ -60,6 +60,15 @@ TEST_F(SurfaceFiles, AnObjFileNamesObjectsGroupsAndMaterials) {
   EXPECT_EQ(names_at(surface, middle_of(6)), Names({"green", "long dress", "\"quoted name\""}));
 }
 
+TEST_F(SurfaceFiles, AnObjectThatIsNamedAgainHasItsFacesAgain) {
+  const ColoredSurface surface = read("a.obj", squares_obj({"o dress", "o belt", "o dress", "g hem", "o belt"}));
+  EXPECT_EQ(names_at(surface, middle_of(0)), Names({"dress"}));
+  EXPECT_EQ(names_at(surface, middle_of(1)), Names({"belt"}));
+  EXPECT_EQ(names_at(surface, middle_of(2)), Names({"dress"}));
+  EXPECT_EQ(names_at(surface, middle_of(3)), Names({"dress", "hem"}));
+  EXPECT_EQ(names_at(surface, middle_of(4)), Names({"belt"}));
+}
+
 TEST_F(SurfaceFiles, AFileWithoutNamesHasNoParts) {
   EXPECT_TRUE(read("a.obj", squares_obj({"", ""})).parts.of.empty());
   const TriMesh ball = test::sphere_surface(1, 8, 4);

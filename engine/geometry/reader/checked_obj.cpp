@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <map>
 
 #include "geometry/files/number_words.h"
 #include "geometry/files/text_rows.h"
@@ -73,14 +74,18 @@ class ObjChecker {
     }
   }
 
-  // assimp reads the first word of an object's name alone, and forgets it where a group follows.
+  // assimp reads the first word of an object's name alone, and forgets it where a group follows. Faces after a name
+  // that has been there before would go to the object before it, so that the name gets an end of its own.
   void take_name(bool is_object) {
     std::string name;
     for (std::size_t k = 1; k < rows_.words().size(); ++k) {
       if (k > 1) name += is_object ? space_in_name : ' ';
       name += rows_.words()[k].text;
     }
-    if (is_object) object_ = name;
+    if (is_object) {
+      name.append(std::size_t(objects_[name]++), end_of_name);
+      object_ = name;
+    }
     const bool has_both = !is_object && !object_.empty();
     result_.bytes += is_object ? "o " : "g ";
     if (has_both) result_.bytes.append(object_).push_back(end_of_name);
@@ -192,7 +197,8 @@ class ObjChecker {
   const Vec3 origin_;
   CheckedSurface result_;
   Bounds box_;
-  std::string object_;  // its name as assimp reads it; empty: no line has named one
+  std::string object_;                  // its name as assimp reads it; empty: no line has named one
+  std::map<std::string, int> objects_;  // how often each has been named
   std::array<Listed, 3> lists_ = {Listed{"vertex"}, Listed{"texture coordinate"}, Listed{"normal"}};
   long long faces_ = 0, small_ = 0, unknown_ = 0, lines_ = 0;
   int unknown_line_ = 0;
