@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/summary.h"
+#include "base/text.h"
 #include "geometry/files/source_file.h"
 #include "geometry/files/surface_file.h"
 #include "geometry/solids/surface_pieces.h"
@@ -31,6 +32,13 @@ std::string piece_text(const SolidSurface& piece, double volume, std::size_t num
                     place.z(), vertices_text(vertices_wanted(samples, volume, area_of(piece.boundary))));
 }
 
+// Lists the names by which handles can select.
+std::string names_line(const std::vector<std::vector<std::string>>& of_parts) {
+  std::vector<std::string> names;
+  for (const std::vector<std::string>& one : of_parts) names.insert(names.end(), one.begin(), one.end());
+  return names.empty() ? "" : fmt::format("groups          {}\n", name_list(names));
+}
+
 }  // namespace
 
 std::string surface_summary(const std::filesystem::path& file) {
@@ -43,6 +51,7 @@ std::string surface_summary(const std::filesystem::path& file) {
   text += fmt::format("surface         {}\nextent          {:.4g} x {:.4g} x {:.4g} in the file's units\n",
                       file.string(), extent.x(), extent.y(), extent.z());
   text += fmt::format("colours         {}\n", read.found.empty() ? "none" : read.found);
+  text += names_line(read.names);
   const auto is_open = [](const std::string& note) {
     return note.find("the surface is open") != note.npos || note.find("closed with caps") != note.npos;
   };

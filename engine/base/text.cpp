@@ -53,6 +53,16 @@ std::string word_list(const std::vector<std::string>& words) {
   return list;
 }
 
+std::string name_list(std::vector<std::string> names) {
+  std::ranges::sort(names);
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  constexpr std::size_t most = 30;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i)
+    text += fmt::format("{}'{}'", i == 0 ? "" : ", ", names[i]);
+  return names.size() > most ? text + fmt::format(" and {} more", names.size() - most) : text;
+}
+
 std::string lowercase(std::string_view text) {
   std::string result(text);
   std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) { return char(std::tolower(c)); });

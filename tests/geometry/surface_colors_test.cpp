@@ -278,7 +278,7 @@ TEST_F(ColoredFiles, ATextureIsFoundByItsNameBesideAModelFromAnotherMachine) {
 
 // The colour is a linear function of the place, so that it is known everywhere.
 ColoredSurface with_known_colors(const TriMesh& mesh) {
-  ColoredSurface file{mesh, {}, nullptr, {}, "of vertices"};
+  ColoredSurface file{mesh, {}, nullptr, {}, {}, {}, "of vertices"};
   for (const auto& p : mesh.points.rowwise())
     file.colors.push_back({float(0.5 + 0.1 * p.x()), float(0.5 + 0.1 * p.y()), float(0.5 + 0.1 * p.z())});
   return file;

@@ -86,6 +86,21 @@ std::shared_ptr<const std::vector<Texture>> textures_from(Stream& in, std::int64
   return std::make_shared<const std::vector<Texture>>(std::move(textures));
 }
 
+// Returns the names of the parts, and checks the part of each vertex.
+SurfaceParts parts_from(const std::string& text, std::vector<std::int32_t> of, const Stream& in) {
+  SurfaceParts parts;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::vector<std::string>& names = parts.names.emplace_back();
+    for (std::string name; std::getline(words, name, '\t');) names.push_back(name);
+  }
+  for (const std::int32_t part : of)
+    if (part < 0 || part >= std::ssize(parts.names)) in.refuse();
+  parts.of = std::move(of);
+  return parts;
+}
+
 ColoredSurface decode(const std::string& bytes, const std::string& name) {
   namespace stream = surface_stream;
   Stream in(bytes, name);
@@ -103,7 +118,8 @@ ColoredSurface decode(const std::string& bytes, const std::string& name) {
   if (std::memcmp(head, stream::accepted, sizeof head) != 0 || !within(counts.vertices, stream::most_vertices) ||
       !within(counts.triangles, stream::most_triangles) || (counts.colors != 0 && counts.colors != counts.vertices) ||
       !within(counts.textures, stream::most_textures) || !within(counts.remarks, stream::most_text) ||
-      !within(counts.found, stream::most_text))
+      !within(counts.found, stream::most_text) || (counts.places != 0 && counts.places != counts.vertices) ||
+      (counts.part_of != 0 && counts.part_of != counts.vertices) || !within(counts.names, stream::most_names))
     in.refuse();
   ColoredSurface surface;
   surface.mesh = {Positions(counts.vertices, 3), Triangles(counts.triangles, 3)};
@@ -114,9 +130,14 @@ ColoredSurface decode(const std::string& bytes, const std::string& name) {
   for (const SurfaceColor& color : surface.colors)
     if (color.texture < -1 || color.texture >= counts.textures) in.refuse();
   surface.textures = textures_from(in, counts.textures);
+  surface.places.resize(std::size_t(counts.places));
+  in.take(surface.places.data(), surface.places.size());
+  std::vector<std::int32_t> part_of(std::size_t(counts.part_of));
+  in.take(part_of.data(), part_of.size());
   std::istringstream remarks(in.text(counts.remarks));
   for (std::string line; std::getline(remarks, line);) surface.remarks.push_back(line);
   surface.found = in.text(counts.found);
+  surface.parts = parts_from(in.text(counts.names), std::move(part_of), in);
   return surface;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <system_error>
 
@@ -78,6 +79,7 @@ ColorReader::ColorReader(const aiScene& scene, fs::path file, std::function<void
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
     if (scene.mMeshes[m]->mMaterialIndex < scene.mNumMaterials) used_[scene.mMeshes[m]->mMaterialIndex] = true;
     by_vertex_ |= scene.mMeshes[m]->HasVertexColors(0);
+    placed_ |= scene.mMeshes[m]->GetNumUVChannels() > 0;
   }
   any_ = by_vertex_;
   if (ending_ == ".obj") find_library();
@@ -218,7 +220,19 @@ std::int32_t ColorReader::keep_texture(const std::string& bytes, const std::stri
   return std::int32_t(result_.textures.size()) - 1;
 }
 
+void ColorReader::append_places(const aiMesh& mesh) {
+  unsigned channel = mesh.mMaterialIndex < surfaces_.size() ? surfaces_[mesh.mMaterialIndex].channel : 0;
+  if (!mesh.HasTextureCoords(channel)) channel = 0;
+  constexpr float none = std::numeric_limits<float>::quiet_NaN();
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+    const aiVector3D* place = mesh.HasTextureCoords(channel) ? &mesh.mTextureCoords[channel][v] : nullptr;
+    const bool within = place != nullptr && std::abs(place->x) < 1e6f && std::abs(place->y) < 1e6f;
+    result_.places.push_back(within ? std::array{place->x, place->y} : std::array{none, none});
+  }
+}
+
 void ColorReader::append(const aiMesh& mesh) {
+  if (placed_) append_places(mesh);
   if (!any_) return;
   Surface surface;
   if (mesh.mMaterialIndex < surfaces_.size()) surface = surfaces_[mesh.mMaterialIndex];
@@ -249,7 +263,7 @@ void ColorReader::append(const aiMesh& mesh) {
 }
 
 FoundColors ColorReader::take() {
-  if (!any_) return {{}, {}, std::move(result_.remarks), ""};
+  if (!any_) return {{}, {}, std::move(result_.places), std::move(result_.remarks), ""};
   std::string& found = result_.found;
   const auto say = [&found](const std::string& text) { found += (found.empty() ? "" : ", ") + text; };
   if (by_vertex_) say("of vertices");

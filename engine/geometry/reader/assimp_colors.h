@@ -4,6 +4,7 @@
 
 #include <assimp/scene.h>
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -18,6 +19,9 @@ namespace supple {
 struct FoundColors {
   std::vector<SurfaceColor> by_vertex;  // of all meshes; empty where the file has no colours
   std::vector<Texture> textures;
+  // Texture coordinates by vertex of all meshes: those of the material's texture, or else the first ones; not a number
+  // where a mesh has none. Empty where no mesh has any.
+  std::vector<std::array<float, 2>> places;
   std::vector<std::string> remarks;  // on what is missing or not drawn
   std::string found;                 // what there is, in words
 };
@@ -27,7 +31,7 @@ class ColorReader {
   // more_time: called before a picture is decoded, with the seconds that it may take.
   ColorReader(const aiScene& scene, std::filesystem::path file, std::function<void(int)> more_time);
 
-  // Appends the colours of a mesh's vertices.
+  // Appends the colours and the texture coordinates of a mesh's vertices.
   void append(const aiMesh& mesh);
   FoundColors take();
 
@@ -39,6 +43,7 @@ class ColorReader {
     bool own = false;          // whether the file says its colour or texture
   };
 
+  void append_places(const aiMesh& mesh);
   Surface surface_of(const aiMaterial& material);
   bool has_color(const aiMaterial& material) const;
   std::int32_t texture_of(const aiString& path, const aiTextureMapMode* modes, std::string& name);
@@ -55,7 +60,7 @@ class ColorReader {
   std::map<std::string, std::int32_t> known_;  // textures by path and wrapping; -1: cannot be read
   FoundColors result_;
   std::int64_t pixels_ = 0;
-  bool any_ = false, by_vertex_ = false;
+  bool any_ = false, by_vertex_ = false, placed_ = false;
   bool has_library_ = true;  // false for an OBJ file whose materials are not there
   std::vector<bool> used_;   // by material
 };

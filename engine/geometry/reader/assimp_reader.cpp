@@ -22,6 +22,7 @@
 #include "geometry/files/surface_stream.h"
 #include "geometry/reader/assimp_colors.h"
 #include "geometry/reader/assimp_files.h"
+#include "geometry/reader/assimp_parts.h"
 #include "geometry/reader/checked_surface.h"
 
 namespace {
@@ -142,13 +143,29 @@ void write_textures(const std::vector<supple::Texture>& textures) {
   }
 }
 
+// Returns the names of the parts as the stream has them.
+std::string text_of(const supple::SurfaceParts& parts) {
+  std::string text;
+  for (const std::vector<std::string>& names : parts.names) {
+    for (const std::string& name : names) text += name + '\t';
+    text += '\n';
+  }
+  return text;
+}
+
 int read(const char* path) {
   const supple::CheckedSurface checked = supple::checked_surface(path);
   Assimp::Importer importer;
   auto* const files = new supple::AssimpFiles(path, checked.bytes);
   importer.SetIOHandler(files);  // which deletes it
-  const aiScene* scene =
-      importer.ReadFile(path, aiProcess_Triangulate | aiProcess_TransformUVCoords | aiProcess_PreTransformVertices);
+  const aiScene* scene = importer.ReadFile(path, aiProcess_TransformUVCoords);
+  supple::PartReader part_reader;
+  if (scene != nullptr) part_reader.remember(*scene);  // the next step drops the nodes and joins their meshes
+  if (scene != nullptr) scene = importer.ApplyPostProcessing(aiProcess_PreTransformVertices);
+  if (scene == nullptr) return refuse(reason_of(importer.GetErrorString(), *files));
+  std::vector<std::string> first_remarks = checked.remarks;
+  const supple::SurfaceParts parts = part_reader.parts_of(*scene, first_remarks);
+  scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   if (scene == nullptr) return refuse(reason_of(importer.GetErrorString(), *files));
   Soup soup;
   supple::ColorReader reader(*scene, path, allow_seconds);
@@ -158,7 +175,7 @@ int read(const char* path) {
     reader.append(*scene->mMeshes[m]);
   }
   supple::FoundColors colors = reader.take();
-  colors.remarks.insert(colors.remarks.begin(), checked.remarks.begin(), checked.remarks.end());
+  colors.remarks.insert(colors.remarks.begin(), first_remarks.begin(), first_remarks.end());
   const bool is_moved = checked.origin != supple::Vec3::Zero();
   const std::string lost = is_moved ? "" : lost_digits(soup);
   if (!lost.empty()) colors.remarks.push_back(lost);
@@ -167,20 +184,27 @@ int read(const char* path) {
   std::string remarks;
   for (const std::string& remark : colors.remarks)
     if (std::ssize(remarks) + std::ssize(remark) < stream::most_text) remarks += supple::one_line(remark) + '\n';
+  const std::string names = text_of(parts);
   const stream::Counts counts{std::int64_t(soup.positions.size() / 3),
                               std::int64_t(soup.indices.size() / 3),
                               std::int64_t(colors.by_vertex.size()),
                               std::int64_t(colors.textures.size()),
+                              std::int64_t(colors.places.size()),
+                              std::int64_t(parts.of.size()),
                               std::int64_t(remarks.size()),
-                              std::int64_t(colors.found.size())};
+                              std::int64_t(colors.found.size()),
+                              std::int64_t(names.size())};
   write(stream::accepted, sizeof stream::accepted);
   write(&counts, 1);
   write(soup.positions.data(), soup.positions.size());
   write(soup.indices.data(), soup.indices.size());
   write(colors.by_vertex.data(), colors.by_vertex.size());
   write_textures(colors.textures);
+  write(colors.places.data(), colors.places.size());
+  write(parts.of.data(), parts.of.size());
   write(remarks.data(), remarks.size());
   write(colors.found.data(), colors.found.size());
+  write(names.data(), names.size());
   return std::fflush(stdout) == 0 ? 0 : 1;
 }
 

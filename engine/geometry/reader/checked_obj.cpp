@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <map>
 
 #include "geometry/files/number_words.h"
 #include "geometry/files/text_rows.h"
@@ -62,6 +63,8 @@ class ObjChecker {
       take_further(key == "vt" ? 1 : 2);
     } else if (key == "f" || key == "fo") {
       take_face();
+    } else if ((key == "o" || key == "g") && rows_.words().size() > 1) {
+      take_name(key == "o");
     } else if (key == "mtllib" || key == "usemtl" || key == "g" || key == "o" || key == "s") {
       result_.bytes.append(rows_.raw()).append("\n");  // names may have any characters
     } else if (key == "V" || key == "F" || number_of<double>(key) || key.find(',') != std::string_view::npos) {
@@ -69,6 +72,24 @@ class ObjChecker {
     } else {
       pass_over(key);
     }
+  }
+
+  // assimp reads the first word of an object's name alone, and forgets it where a group follows. Faces after a name
+  // that has been there before would go to the object before it, so that the name gets an end of its own.
+  void take_name(bool is_object) {
+    std::string name;
+    for (std::size_t k = 1; k < rows_.words().size(); ++k) {
+      if (k > 1) name += is_object ? space_in_name : ' ';
+      name += rows_.words()[k].text;
+    }
+    if (is_object) {
+      name.append(std::size_t(objects_[name]++), end_of_name);
+      object_ = name;
+    }
+    const bool has_both = !is_object && !object_.empty();
+    result_.bytes += is_object ? "o " : "g ";
+    if (has_both) result_.bytes.append(object_).push_back(end_of_name);
+    result_.bytes += name + '\n';
   }
 
   // Lines that decide neither shape nor colour are left out.
@@ -176,6 +197,8 @@ class ObjChecker {
   const Vec3 origin_;
   CheckedSurface result_;
   Bounds box_;
+  std::string object_;                  // its name as assimp reads it; empty: no line has named one
+  std::map<std::string, int> objects_;  // how often each has been named
   std::array<Listed, 3> lists_ = {Listed{"vertex"}, Listed{"texture coordinate"}, Listed{"normal"}};
   long long faces_ = 0, small_ = 0, unknown_ = 0, lines_ = 0;
   int unknown_line_ = 0;

@@ -11,6 +11,10 @@
 
 namespace supple {
 
+// These characters stand in the bytes for assimp: one for a space in an object's name, and one between the names of an
+// object and of a group in it.
+inline constexpr char space_in_name = '\x1e', end_of_name = '\x1f';
+
 struct CheckedSurface {
   std::string bytes;  // assimp reads these in the file's place
   // Taken off all positions in `bytes`, so that floats keep the shape of a body that is far from the origin [file's

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <unordered_map>
@@ -86,9 +87,9 @@ SurfaceColor color_at(const TriMesh& mesh, Eigen::Index triangle, const CornerCo
   return mean(colors.data(), weights_in_triangle(closest_in_triangle(p, a, b, c), a, b, c));
 }
 
-class Painter {
+class FileTriangles {
  public:
-  explicit Painter(const ColoredSurface& file) : file_(file), by_place_(file.mesh) {}
+  explicit FileTriangles(const ColoredSurface& file) : file_(file), by_place_(file.mesh) {}
 
   CornerColors colors_of(const TriMesh& surface, Eigen::Index triangle) {
     const Eigen::Index own = by_place_.find(surface, triangle);
@@ -100,20 +101,32 @@ class Painter {
       }
       return result;
     }
-    if (!soup_) soup_.emplace(finite_triangles());
-    const Vec3 middle =
-        (corner(surface, triangle, 0) + corner(surface, triangle, 1) + corner(surface, triangle, 2)) / 3;
-    const double far = 10 * (bounds_of(soup_->mesh().points).diagonal() + bounds_of(surface.points).diagonal());
-    const auto near = soup_->closest(middle, far, Vec3::Zero());
-    if (near.triangle < 0) return result;
-    const Eigen::Index nearest = kept_[std::size_t(near.triangle)];
+    const Eigen::Index nearest = nearest_to(surface, triangle);
+    if (nearest < 0) return result;
     const CornerColors colors = {color(nearest, 0), color(nearest, 1), color(nearest, 2)};
     for (int k = 0; k < 3; ++k)
       result[std::size_t(k)] = color_at(file_.mesh, nearest, colors, corner(surface, triangle, k));
     return result;
   }
 
+  // Returns the part of a triangle; the first one where no triangle is near.
+  std::int32_t part_of(const TriMesh& surface, Eigen::Index triangle) {
+    Eigen::Index source = by_place_.find(surface, triangle);
+    if (source < 0) source = nearest_to(surface, triangle);
+    return source < 0 ? 0 : file_.parts.of[std::size_t(file_.mesh.triangles(source, 0))];
+  }
+
  private:
+  // Returns the file's triangle that is nearest to the middle of another one; -1: there is none.
+  Eigen::Index nearest_to(const TriMesh& surface, Eigen::Index triangle) {
+    if (!soup_) soup_.emplace(finite_triangles());
+    const Vec3 middle =
+        (corner(surface, triangle, 0) + corner(surface, triangle, 1) + corner(surface, triangle, 2)) / 3;
+    const double far = 10 * (bounds_of(soup_->mesh().points).diagonal() + bounds_of(surface.points).diagonal());
+    const auto near = soup_->closest(middle, far, Vec3::Zero());
+    return near.triangle < 0 ? -1 : kept_[std::size_t(near.triangle)];
+  }
+
   const SurfaceColor& color(Eigen::Index triangle, int k) const {
     return file_.colors[std::size_t(file_.mesh.triangles(triangle, k))];
   }
@@ -132,6 +145,28 @@ class Painter {
   std::optional<TriangleSoup> soup_;  // of the triangles kept_, once it is needed
   std::vector<Eigen::Index> kept_;
 };
+
+// Returns the place of a pixel among `size` that a texture has where it goes on beyond its edges.
+int beyond_edges(std::int64_t i, int size, Wrap rule) {
+  if (rule == Wrap::clamp) return int(std::clamp<std::int64_t>(i, 0, size - 1));
+  const std::int64_t period = rule == Wrap::mirror ? 2 * std::int64_t(size) : size;
+  const std::int64_t inside = (i % period + period) % period;
+  return int(inside < size ? inside : period - 1 - inside);
+}
+
+// Returns the linear colour of the pixel of a texture that lies at a place of it.
+Vec3 texel_at(const Texture& texture, const SurfaceColor& place) {
+  const auto number = [](float at, int size) { return std::int64_t(std::floor(double(at) * size)); };
+  const int x = beyond_edges(number(place.u, texture.width), texture.width, texture.wrap_u),
+            y = beyond_edges(number(place.v, texture.height), texture.height, texture.wrap_v);
+  const std::uint8_t* rgb =
+      &texture.rgb[3 * (std::size_t(texture.height - 1 - y) * std::size_t(texture.width) + std::size_t(x))];
+  const auto linear = [](std::uint8_t byte) {
+    const double c = byte / 255.0;
+    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+  };
+  return {linear(rgb[0]), linear(rgb[1]), linear(rgb[2])};
+}
 
 std::uint64_t hash_of(const SurfaceColors& colors) {
   std::uint64_t hash = hash_bytes(colors.corners.data(), sizeof(CornerColors) * colors.corners.size());
@@ -191,6 +226,28 @@ SplitSurface refined_split(const SplitSurface& coarse, Eigen::Index places, doub
   return result;
 }
 
+// Splits the vertices of a skin of the same triangles where those of a split surface are, and gives them its colours.
+Skin split_as(const Skin& plain, const SplitSurface& colored_surface) {
+  Skin skin;
+  skin.rest.triangles.resize(plain.rest.triangles.rows(), 3);
+  std::unordered_map<std::array<std::int32_t, 2>, std::int32_t, KeyHash> names;  // by vertex of both surfaces
+  for (Eigen::Index t = 0; t < plain.rest.triangles.rows(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t vertex = plain.rest.triangles(t, k), colored = colored_surface.mesh.triangles(t, k);
+      const auto [at, added] = names.try_emplace({vertex, colored}, static_cast<std::int32_t>(skin.smooth.size()));
+      skin.rest.triangles(t, k) = at->second;
+      if (!added) continue;
+      skin.smooth.push_back(vertex);
+      skin.color.push_back(colored_surface.colors[std::size_t(colored)]);
+      if (!plain.square.empty()) skin.square.push_back(plain.square[std::size_t(vertex)]);
+    }
+  }
+  skin.rest.points = plain.rest.points(skin.smooth, Eigen::all);
+  skin.occlusion.assign(skin.smooth.size(), 1.0f);
+  skin.paint.assign(skin.smooth.size(), plain.paint.empty() ? std::array<float, max_paint_layers>{} : plain.paint[0]);
+  return skin;
+}
+
 TriMesh joined(const SplitSurface& surface) {
   const auto places = 1 + *std::ranges::max_element(surface.place_of);
   TriMesh mesh{Positions::Zero(places, 3), surface.mesh.triangles};
@@ -206,10 +263,50 @@ std::shared_ptr<const SurfaceColors> colors_on(const TriMesh& surface, const Col
   if (file.colors.empty()) return nullptr;
   auto result = std::make_shared<SurfaceColors>();
   result->textures = file.textures;
-  Painter painter(file);
-  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) result->corners.push_back(painter.colors_of(surface, t));
+  FileTriangles triangles(file);
+  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t)
+    result->corners.push_back(triangles.colors_of(surface, t));
   result->hash = hash_of(*result);
   return result;
+}
+
+std::shared_ptr<const SurfaceColors> colors_on(const FileCorners& corners, const ColoredSurface& file) {
+  if (file.colors.empty()) return nullptr;
+  auto result = std::make_shared<SurfaceColors>();
+  result->textures = file.textures;
+  for (const auto& triangle : corners) {
+    CornerColors& colors = result->corners.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      SurfaceColor of[3];
+      for (int j = 0; j < 3; ++j) of[j] = file.colors[std::size_t(file.mesh.triangles(triangle[k].triangle, j))];
+      colors[k] = mean(of, triangle[k].weights);
+    }
+  }
+  result->hash = hash_of(*result);
+  return result;
+}
+
+std::shared_ptr<const SurfaceParts> parts_on(const TriMesh& surface, const ColoredSurface& file) {
+  if (file.parts.of.empty()) return nullptr;
+  auto parts = std::make_shared<SurfaceParts>();
+  parts->names = file.parts.names;
+  FileTriangles triangles(file);
+  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) parts->of.push_back(triangles.part_of(surface, t));
+  return parts;
+}
+
+Vec3 srgb_at(const SurfaceColors& colors, Eigen::Index triangle, const Vec3& weights) {
+  const SurfaceColor color = mean(colors.corners[std::size_t(triangle)].data(), weights);
+  Vec3 linear(color.red, color.green, color.blue);
+  if (color.texture >= 0) linear = linear.cwiseProduct(texel_at((*colors.textures)[std::size_t(color.texture)], color));
+  return linear.cwiseMax(0).cwiseMin(1).unaryExpr([](double c) {
+    return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;  // IEC 61966-2-1
+  });
+}
+
+std::vector<std::int32_t> put_on_colors(Skin& skin, const TriMesh& surface, const SurfaceColors& colors) {
+  skin = split_as(skin, split(surface, colors));
+  return skin.smooth;
 }
 
 Skin colored_skin(const TriMesh& surface, const SurfaceColors& colors, double longest, Eigen::Index most,
@@ -217,25 +314,7 @@ Skin colored_skin(const TriMesh& surface, const SurfaceColors& colors, double lo
   const SplitSurface fine = refined_split(split(surface, colors), surface.points.rows(), longest, most);
   const TriMesh whole = joined(fine);
   std::vector<std::int32_t> vertex_of;
-  const Skin plain = skin_of_surface(whole.points, whole.triangles, square, vertex_of);
-  Skin skin;
-  skin.rest.triangles.resize(plain.rest.triangles.rows(), 3);
-  std::unordered_map<std::array<std::int32_t, 2>, std::int32_t, KeyHash> names;  // by vertex of both surfaces
-  for (Eigen::Index t = 0; t < plain.rest.triangles.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t vertex = plain.rest.triangles(t, k), colored = fine.mesh.triangles(t, k);
-      const auto [at, added] = names.try_emplace({vertex, colored}, static_cast<std::int32_t>(skin.smooth.size()));
-      skin.rest.triangles(t, k) = at->second;
-      if (!added) continue;
-      skin.smooth.push_back(vertex);
-      skin.color.push_back(fine.colors[std::size_t(colored)]);
-      if (!plain.square.empty()) skin.square.push_back(plain.square[std::size_t(vertex)]);
-    }
-  }
-  skin.rest.points = plain.rest.points(skin.smooth, Eigen::all);
-  skin.occlusion.assign(skin.smooth.size(), 1.0f);
-  skin.paint.assign(skin.smooth.size(), plain.paint.empty() ? std::array<float, max_paint_layers>{} : plain.paint[0]);
-  return skin;
+  return split_as(skin_of_surface(whole.points, whole.triangles, square, vertex_of), fine);
 }
 
 }  // namespace supple

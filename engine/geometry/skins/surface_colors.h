@@ -1,5 +1,6 @@
 // Carries the colours of a file's triangles to what is drawn of them: the surface is repaired, taken apart and refined
-// in between, and its triangles find their colours again by their places.
+// in between, and its triangles find their colours again by their places, or by where their corners came from
+// (file_corners.h).
 #pragma once
 
 #include <array>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "geometry/files/colored_surface.h"
+#include "geometry/skins/file_corners.h"
 #include "geometry/skins/skin.h"
 
 namespace supple {
@@ -23,6 +25,20 @@ struct SurfaceColors {
 // none. A triangle with the corners of one of the file's has its colours. Others, such as those that close a hole, have
 // those of the nearest triangle.
 std::shared_ptr<const SurfaceColors> colors_on(const TriMesh& surface, const ColoredSurface& file);
+
+// The same for a surface whose corners are known to come from places in the file.
+std::shared_ptr<const SurfaceColors> colors_on(const FileCorners& corners, const ColoredSurface& file);
+
+// Returns the parts of a surface's triangles, which find theirs as colors_on finds colours; null where no part of the
+// file has a name.
+std::shared_ptr<const SurfaceParts> parts_on(const TriMesh& surface, const ColoredSurface& file);
+
+// Returns the colour at a place of a triangle in sRGB, each channel 0 to 1. weights: barycentric.
+Vec3 srgb_at(const SurfaceColors& colors, Eigen::Index triangle, const Vec3& weights);
+
+// Gives a skin that skin_of_surface has made of these triangles the colours of their corners. Vertices at which colours
+// meet are split; those that were one keep one normal (Skin::smooth). Returns the vertex that each was before.
+std::vector<std::int32_t> put_on_colors(Skin& skin, const TriMesh& surface, const SurfaceColors& colors);
 
 // Makes the skin of a coloured surface as skin_of_surface does, after it has been refined (refine_surface.h). Vertices
 // at which colours meet are split; those that were one keep one normal (Skin::smooth).

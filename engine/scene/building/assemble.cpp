@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/text.h"
+#include "scene/building/cloth_cut.h"
 #include "scene/building/overlaps.h"
 #include "scene/building/selected_vertices.h"
 #include "scene/building/skin_offsets.h"
@@ -106,13 +107,6 @@ void note_drag(const SceneDef& scene, Body& body) {
   body.notes.push_back(fmt::format("body '{}' has a drag, but the scene has no [wind] and so no air", body.def.name));
 }
 
-// Says why a handle selects no vertex, after "selects no vertex".
-std::string empty_reason(const Selection& select) {
-  if (select.kind == Selection::Kind::region) return fmt::format(": there is no region '{}'", select.region);
-  if (select.border) return ": a border is where a cloth ends, and there is none";
-  return "; boxes, spheres and planes are relative to the rest bounding box (0 to 1)";
-}
-
 // Tells which vertices earlier handles have at some time at which another one, `next`, holds. They keep them.
 std::vector<char> taken_before(const Body& body, const HandleDef& next) {
   std::vector<char> taken(body.description.mesh.rest.rows(), 0);
@@ -142,7 +136,7 @@ void add_handle(Body& body, const HandleDef& def, std::vector<Problem>& problems
     problems.push_back(
         at(def.select.place,
            fmt::format("handle '{}' of body '{}' selects no vertex{}", def.name, body.def.name,
-                       selects_none ? empty_reason(def.select) : " that no other handle holds at that time")));
+                       selects_none ? empty_reason(def.select, body) : " that no other handle holds at that time")));
   }
   const Eigen::Index held = std::accumulate(
       body.description.handles.begin(), body.description.handles.end(),
@@ -256,6 +250,7 @@ std::vector<Body> assemble(const SceneDef& scene, const SlowWork& work) {
       note_drag(scene, body);
       if (!def.cloth) body.volume = quality(body.description.mesh).volume;
       set_values(body, scene, problems);
+      if (!body.flat.empty()) body.notes.push_back(cut_text(body));
       if (def.pattern_size && *def.pattern_size < 1e-3 * bounds_of(body.description.mesh.rest).diagonal()) {
         problems.push_back(
             at(def.place, fmt::format("pattern_size of body '{}' is below a thousandth of its size", def.name)));

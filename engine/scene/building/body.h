@@ -55,15 +55,21 @@ struct Body {
   double volume = 0;                 // of its tetrahedra at rest [m^3]
   bool holds_gas = false;            // its surface was found to be closed, which a pressure needs
   ClothMesh cloth;
-  TriMesh skin;                                 // the surface of a body made from one, in the file's frame
-  std::shared_ptr<const SurfaceColors> colors;  // colours of `skin`; null where it has the body's own
-  Shape shape;                                  // the shape of a body made from one, in the file's frame
-  Positions unplaced;                           // the rest positions of the mesh in the file's frame
-  std::uint64_t seed = 0;                       // of its random start
-  std::vector<Overlap> overlaps;                // at the start; what the scene does about them is in its definition
-  std::optional<EarlierState> from;             // nothing: the body starts as its definition says
-  Vec3 start_move = Vec3(0, 0, 0);              // the move out of colliders that the body would start in [m]
-  Eigen::Affine3d placement = no_placement();   // from the file's frame to the world: turned, scaled, moved
+  // By triangle and corner: the place of a cloth in its texture, in which it lies flat; empty: each triangle is at rest
+  // as it lies.
+  std::vector<std::array<Eigen::Vector2d, 3>> flat;
+  TriMesh skin;  // the surface of a body made from one, in the file's frame
+  // Colours of `skin`, or of a cloth's triangles; null where the body's own are drawn.
+  std::shared_ptr<const SurfaceColors> colors;
+  std::shared_ptr<const SurfaceColors> file_colors;  // the same, also where they are not drawn; null: the file has none
+  std::shared_ptr<const SurfaceParts> parts;         // of the same triangles; null: unnamed, or nothing asks for them
+  Shape shape;                                       // the shape of a body made from one, in the file's frame
+  Positions unplaced;                                // the rest positions of the mesh in the file's frame
+  std::uint64_t seed = 0;                            // of its random start
+  std::vector<Overlap> overlaps;               // at the start; what the scene does about them is in its definition
+  std::optional<EarlierState> from;            // nothing: the body starts as its definition says
+  Vec3 start_move = Vec3(0, 0, 0);             // the move out of colliders that the body would start in [m]
+  Eigen::Affine3d placement = no_placement();  // from the file's frame to the world: turned, scaled, moved
 };
 
 // Returns how many metres one of the file's units is.

@@ -21,6 +21,7 @@ Mat3 turn_of(const Body& body) { return rotation_from_degrees(body.def.turn_deg)
 // Returns the edge of the printed squares [m]; 0: nothing is printed.
 double square_of(const Body& body) {
   if (body.def.pattern == Pattern::none) return 0;
+  if (body.def.usual_pattern && body.def.cloth && body.colors) return 0;  // the file's colours are its print
   if (body.def.pattern_size) return *body.def.pattern_size;
   Vec3 extent = bounds_of(body.description.mesh.rest * turn_of(body)).extent();
   std::sort(extent.begin(), extent.end());
@@ -64,6 +65,20 @@ SkinRequest request_for(const Body& body) {
   return {body, bounds_of(body.unplaced * turn.transpose()).extent().maxCoeff() / body.def.skin_cells};
 }
 
+// Gives the drawn surface of a cloth the colours of its file.
+void color_cloth(const Body& body, const Triangles& surface, DrawnBody& drawn) {
+  const std::vector<FlatPlace> flat = drawn.skin.flat;
+  const std::vector<std::int32_t> before =
+      put_on_colors(drawn.skin, {body.description.mesh.rest, surface}, *body.colors);
+  std::vector<std::int32_t> vertex_of;
+  for (const std::int32_t v : before) {
+    vertex_of.push_back(drawn.vertex_of[std::size_t(v)]);
+    drawn.skin.flat.push_back(flat[std::size_t(v)]);
+  }
+  drawn.vertex_of = std::move(vertex_of);
+  drawn.textures = body.colors->textures;
+}
+
 // Draws the mesh's own boundary.
 DrawnBody drawn_mesh(const Body& body) {
   DrawnBody drawn;
@@ -74,6 +89,7 @@ DrawnBody drawn_mesh(const Body& body) {
   drawn.skin = skin_of_surface(placed.rest * turn_of(body), surface, square, drawn.vertex_of);
   if (body.def.cloth) drawn.skin.flat = flat_places(drawn.skin, drawn.vertex_of, square);
   if (printed == 0) drawn.skin.square.clear();
+  if (body.def.cloth && body.colors) color_cloth(body, surface, drawn);
   for (std::size_t v = 0; v < drawn.vertex_of.size(); ++v)
     drawn.skin.rest.points.row(v) = placed.rest.row(drawn.vertex_of[v]);
   drawn.color = body.def.color.value_or(body.def.shape.empty() ? Shape{}.color : body.shape.color);

@@ -8,6 +8,7 @@
 #include "geometry/meshes/cloth.h"
 #include "scene/building/body_depths.h"
 #include "scene/building/body_passings.h"
+#include "scene/building/cloth_cut.h"
 #include "scene/building/collision_set.h"
 #include "scene/building/overlaps.h"
 #include "scene/building/solver_warnings.h"
@@ -282,6 +283,26 @@ std::vector<Problem> said(std::vector<Warning> list) {
   return problems;
 }
 
+namespace {
+
+// Warns of a cloth that starts stretched or pressed far from its cut.
+void warn_of_cut(const Body& body, std::vector<Warning>& list) {
+  if (body.flat.empty()) return;
+  const CutStretch stretch = cut_stretch(body);
+  if (stretch.far <= 0) return;
+  const double equal = scale_of_equal_area(body), own = cut_scale(body);
+  const bool is_scale = own > 1.2 * equal || own < equal / 1.2;
+  list.push_back(
+      at(WarningKind::cut, body.def.cloth->cut_place,
+         fmt::format("body '{}' starts far from its cut: {:.3g} % of its triangles are stretched beyond 1.5 or pressed "
+                     "below 0.67 ({:.2f} to {:.2f} in all); {}",
+                     body.def.name, 100 * stretch.far, stretch.least, stretch.largest,
+                     is_scale ? fmt::format("cut_scale = {:.4g} would give the cut the area of the surface", equal)
+                              : "the texture may be no cut of it")));
+}
+
+}  // namespace
+
 std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bodies) {
   std::vector<Warning> list;
   for (const Body& body : bodies) {
@@ -316,6 +337,7 @@ std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bo
                                       handle.name, body.def.name, sag, 100 * sag / box.diagonal())));
       }
     }
+    warn_of_cut(body, list);
     const double crossing = crossing_number(body);
     constexpr double turns_with_one_level = 0.3;  // at 0.46, a ball of jelly loses a quarter of its roll
     if (crossing > turns_with_one_level && body.def.solver.settings.levels < 2 && !body.def.cloth) {

@@ -1,5 +1,7 @@
 #include "scene/building/weaving.h"
 
+#include "scene/building/cloth_cut.h"
+
 namespace supple {
 namespace {
 
@@ -42,6 +44,35 @@ void weave_triangles(Body& body) {
   }
 }
 
+// Lays each triangle as it lies in the texture. The warp is the grain, whose first two numbers are along u and v. A
+// triangle that is mirrored there is laid as its mirror image, the same cloth seen from its back.
+void weave_cut(Body& body) {
+  const ClothDef& def = *body.def.cloth;
+  BodyDescription& description = body.description;
+  const double scale = cut_scale(body);
+  const Eigen::Vector2d warp = def.grain.head<2>().normalized(), weft(-warp.y(), warp.x());
+  description.fabric = def.fabric->fabric;
+  description.cloth.clear();
+  const Triangles& triangles = body.cloth.surface.triangles;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    const auto& at = body.flat[std::size_t(t)];
+    const Eigen::Vector2d first = scale * (at[1] - at[0]), second = scale * (at[2] - at[0]);
+    const double side = first.x() * second.y() < first.y() * second.x() ? -1 : 1;
+    description.cloth.push_back({{triangles(t, 0), triangles(t, 1), triangles(t, 2)},
+                                 {first.dot(warp), second.dot(warp), side * first.dot(weft), side * second.dot(weft)}});
+  }
+}
+
+// Gives each vertex a third of the area that its triangles have at rest [m^2].
+std::vector<double> areas_at_rest(const Body& body) {
+  const BodyDescription& description = body.description;
+  if (body.flat.empty()) return vertex_areas({description.mesh.rest, body.cloth.surface.triangles});
+  std::vector<double> areas(std::size_t(description.mesh.rest.rows()), 0.0);
+  for (const FlatTriangle& triangle : description.cloth)
+    for (const std::int32_t v : triangle.corner) areas[std::size_t(v)] += triangle.area() / 3;
+  return areas;
+}
+
 }  // namespace
 
 void weave(Body& body) {
@@ -49,12 +80,14 @@ void weave(Body& body) {
   BodyDescription& description = body.description;
   const ClothMesh& cloth = body.cloth;
   description.surface = cloth.surface.triangles;
-  if (def.cloth->fabric) {
+  if (!body.flat.empty()) {
+    weave_cut(body);
+  } else if (def.cloth->fabric) {
     weave_triangles(body);
   } else {
     weave_springs(body);
   }
-  description.point_mass = vertex_areas({description.mesh.rest, cloth.surface.triangles});
+  description.point_mass = areas_at_rest(body);
   double area = 0;
   for (const double share : description.point_mass) area += share;
   const double density = def.total_mass ? *def.total_mass / area : def.body_density();

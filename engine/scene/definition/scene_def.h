@@ -28,10 +28,11 @@
 
 namespace supple {
 
-// Selects vertices of a body by a box, ball, half space or region, by their numbers, or as those nearest to points.
-// Coordinates are relative to the rest bounding box (0 to 1 along each axis).
+// Selects vertices of a body by a box, ball, half space or region, by their numbers, as those nearest to points, or by
+// what the file of a surface says of them: the name of a group or material, or a colour. Coordinates are relative to
+// the rest bounding box (0 to 1 along each axis).
 struct Selection {
-  enum class Kind { region, box, sphere, plane, vertices, nearest } kind = Kind::box;
+  enum class Kind { region, box, sphere, plane, vertices, nearest, group, color } kind = Kind::box;
   std::string region;
   std::vector<int> vertices;                          // numbers, counted from 1
   Vec3 lower = Vec3(0, 0, 0), upper = Vec3(1, 1, 1);  // box
@@ -39,6 +40,9 @@ struct Selection {
   double radius = 0;                                  // sphere; relative to the longest side
   Vec3 normal = Vec3(0, 1, 0);                        // plane: picks the side that it points to
   std::vector<Vec3> points;                           // nearest
+  std::string group;                                  // a name in the file
+  Vec3 color = Vec3(0, 0, 0);                         // [sRGB]
+  double tolerance = 0.1;                             // of each channel of the colour
   bool border = false;                                // of these, only those on the open border of a cloth
   FilePlace place;                                    // in the file, for messages once the mesh is known
 };
@@ -48,7 +52,8 @@ struct Names<Selection::Kind> {
   using Kind = Selection::Kind;
   static constexpr std::array table = {Name{Kind::region, "region"},     Name{Kind::box, "box"},
                                        Name{Kind::sphere, "sphere"},     Name{Kind::plane, "plane"},
-                                       Name{Kind::vertices, "vertices"}, Name{Kind::nearest, "nearest"}};
+                                       Name{Kind::vertices, "vertices"}, Name{Kind::nearest, "nearest"},
+                                       Name{Kind::group, "group"},       Name{Kind::color, "color"}};
 };
 
 struct MotionKey {
@@ -110,15 +115,29 @@ struct FabricDef {
   std::optional<double> usual_density;  // of a preset [kg/m^2]
 };
 
+// Says in which shape each triangle of a surface is at rest.
+enum class ClothCut {
+  surface,  // as it lies in the file
+  texture,  // as it lies flat in the texture, whose coordinates are those of the pieces when they were cut
+};
+template <>
+struct Names<ClothCut> {
+  static constexpr std::array table = {Name{ClothCut::surface, "surface"}, Name{ClothCut::texture, "texture"}};
+};
+
 // Describes a cloth: a grid, the triangles of a mesh file, or those of a surface. It is made of a fabric, or of
 // springs.
 struct ClothDef {
   std::filesystem::path mesh, surface;             // both empty: a grid
   Eigen::Vector2d extent = Eigen::Vector2d(1, 1);  // of the grid [m]
   Eigen::Vector2i cells = Eigen::Vector2i(40, 40);
-  std::optional<double> edge;       // wanted mean length of edges; the triangles stay as they are [m]
-  Vec3 grain = Vec3(0, 1, 0);       // direction of the warp, in the frame of the file; a triangle has it in its plane
-  std::optional<FabricDef> fabric;  // nothing: it is made of springs
+  std::optional<double> edge;  // wanted mean length of edges; the triangles stay as they are [m]
+  Vec3 grain = Vec3(0, 1, 0);  // direction of the warp, in the frame of the file; a triangle has it in its plane
+  ClothCut cut = ClothCut::surface;
+  std::optional<double> cut_scale;          // of one unit of the texture; nothing: as much as keeps the area [m]
+  FilePlace cut_place;                      // in the file, for messages once the surface is known
+  std::optional<double> sew;                // of vertices on the border that become one, the distance at most [m]
+  std::optional<FabricDef> fabric;          // nothing: it is made of springs
   double stretch = 0, shear = 0, bend = 0;  // stiffness of a spring [N/m]
 };
 
@@ -225,6 +244,7 @@ struct BodyDef {
   std::vector<HandleDef> handles;
   SolverDef solver;
   Pattern pattern = Pattern::none;
+  bool usual_pattern = false;          // the scene names no pattern, so that colours of a file have none over them
   std::optional<double> pattern_size;  // edge of the pattern's squares [m]
   std::optional<Vec3> color;           // replaces the shape's own colours [sRGB]
   std::optional<Vec3> back_color;      // of the back of cloth [sRGB]

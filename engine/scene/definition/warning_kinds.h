@@ -22,6 +22,7 @@ enum class WarningKind {
   delay,      // chebyshev's delay leaves no iteration to accelerate
   overlap,    // two bodies are in the same place (body_passings.h, body_depths.h; `inside`: overlaps.h)
   skin,       // the skin reaches far beyond the elements
+  cut,        // a cloth starts stretched far from the flat pieces that it was cut from
   unsolved,   // steps are left unsolved; known at the end of a film
 };
 template <>
@@ -34,7 +35,7 @@ struct Names<WarningKind> {
       Name{WarningKind::size, "size"},         Name{WarningKind::regions, "regions"},
       Name{WarningKind::thin, "thin"},         Name{WarningKind::delay, "delay"},
       Name{WarningKind::overlap, "overlap"},   Name{WarningKind::skin, "skin"},
-      Name{WarningKind::unsolved, "unsolved"}};
+      Name{WarningKind::cut, "cut"},           Name{WarningKind::unsolved, "unsolved"}};
 };
 
 }  // namespace supple

@@ -30,6 +30,11 @@ std::vector<std::string> text_of_pieces(const SurfacePieces& found, std::size_t 
   return {text};
 }
 
+bool asks_for_names(const BodyDef& body) {
+  return std::ranges::any_of(body.handles,
+                             [](const HandleDef& handle) { return handle.select.kind == Selection::Kind::group; });
+}
+
 }  // namespace
 
 BodySurface read_body_surface(const BodyDef& body) {
@@ -39,6 +44,7 @@ BodySurface read_body_surface(const BodyDef& body) {
   SolidSurface solid = solid_surface(file.mesh, body.surface_options, body.surface.string(), &result.notes);
   result.notes.insert(result.notes.end(), file.remarks.begin(), file.remarks.end());
   result.found = file.found;
+  result.names = file.parts.names;
   result.box = bounds_of(solid.boundary.points);
   const Joining joining = body.pieces == Pieces::bodies ? Joining::cavities : Joining::near;
   SurfacePieces found = pieces_of(std::move(solid), joining, touching_gap * result.box.diagonal());
@@ -62,6 +68,7 @@ BodySurface read_body_surface(const BodyDef& body) {
   for (const SolidSurface& piece : found.pieces) {
     result.sources.push_back(source_of(body.surface, piece));
     result.colors.push_back(colors_on(piece.skin(), file));
+    result.parts.push_back(asks_for_names(body) ? parts_on(piece.skin(), file) : nullptr);
     result.whole.middleRows(row, piece.boundary.points.rows()) = piece.boundary.points;
     row += piece.boundary.points.rows();
   }
@@ -73,8 +80,8 @@ BodySurface read_body_surface(const BodyDef& body) {
 std::vector<BodyDef> bodies_of(const ConfigTable& table, BodyDef body) {
   if (body.surface.empty()) return {std::move(body)};
   auto& known = known_surfaces(table.config())->of_bodies;
-  const std::string name =
-      fmt::format("{}{} {}", body.surface.string(), body.surface_options.text(), name_of(body.pieces));
+  const std::string name = fmt::format("{}{} {}{}", body.surface.string(), body.surface_options.text(),
+                                       name_of(body.pieces), asks_for_names(body) ? " with names" : "");
   try {
     std::shared_ptr<const BodySurface>& read = known[name];
     if (!read) read = std::make_shared<BodySurface>(read_body_surface(body));

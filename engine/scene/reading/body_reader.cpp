@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "scene/reading/model_scene.h"
+#include "scene/reading/selection_reader.h"
 #include "scene/reading/table_readers.h"
 
 namespace supple {
@@ -26,65 +27,6 @@ std::vector<MotionKey> read_keys(const ConfigTable& table, const char* turn) {
 }
 
 namespace {
-
-Selection read_selection(const ConfigTable& handle) {
-  Selection s;
-  s.place = handle.place("select");
-  const auto table = handle.table(
-      {"select", "", "which vertices, by exactly one of region, box, sphere, plane, vertices, nearest, or by border"},
-      "required");
-  if (!table) {
-    if (!handle.has("select"))
-      handle.complain("'select' is missing: such as select = { box = [[0, 0, 0], [1, 0.1, 1]] }");
-    return s;
-  }
-  using Kind = Selection::Kind;
-  const auto key_of = [](Kind kind, const char* meaning) { return Key{name_of(kind).data(), "", meaning}; };
-  int given = 0;
-  const auto pick = [&](Kind kind) {
-    ++given;
-    s.kind = kind;
-  };
-  if (table->has(name_of(Kind::region).data())) {
-    pick(Kind::region);
-    s.region = table->text(key_of(Kind::region, "all vertices of elements with this tag"), std::nullopt);
-  }
-  if (table->has(name_of(Kind::box).data())) {
-    pick(Kind::box);
-    const std::vector<Vec3> corners =
-        table->vectors(key_of(Kind::box, "lower and upper corner, relative to the rest bounding box (0 to 1)"), 2);
-    if (corners.size() == 2) {
-      s.lower = corners[0];
-      s.upper = corners[1];
-      if ((s.lower.array() > s.upper.array()).any())
-        table->complain("box", "box: the first corner must be the lower one");
-    }
-  }
-  if (const auto sphere = table->table(key_of(Kind::sphere, "vertices in a ball"))) {
-    pick(Kind::sphere);
-    s.center = sphere->vector({"center", "", "relative to the rest bounding box (0 to 1)"}, std::nullopt);
-    s.radius = sphere->number({"radius", "", "relative to the longest side"}, std::nullopt, Range::positive());
-  }
-  if (const auto plane = table->table(key_of(Kind::plane, "vertices on one side of a plane"))) {
-    pick(Kind::plane);
-    s.center = plane->vector({"point", "", "relative to the rest bounding box (0 to 1)"}, std::nullopt);
-    s.normal = plane->vector({"normal", "", "points to the side that is picked"}, std::nullopt);
-    if (s.normal.norm() < 1e-9) plane->complain("normal", "normal: must not be zero");
-  }
-  s.vertices =
-      table->integers(key_of(Kind::vertices, "numbers of vertices, counted from 1 in the order of the mesh"), 1);
-  if (table->has(name_of(Kind::vertices).data())) pick(Kind::vertices);
-  if (table->has(name_of(Kind::nearest).data())) {
-    pick(Kind::nearest);
-    s.points = table->vectors(
-        key_of(Kind::nearest, "points, relative to the rest bounding box (0 to 1): the vertex nearest to each"), 0);
-  }
-  s.border =
-      table->boolean({"border", "", "true: only vertices on the open border of a cloth; alone: all of them"}, false);
-  if (s.border && given == 0) pick(Kind::box);  // the whole box
-  if (given != 1) table->complain(fmt::format("a selection is one of {}, or border", word_list(all_names<Kind>())));
-  return s;
-}
 
 std::optional<AttachDef> read_attach(const ConfigTable& handle) {
   const auto table = handle.table({"attach", "", "what the vertices go with: a collider, or another body"});
@@ -165,6 +107,30 @@ void read_springs(const ConfigTable& table, ClothDef& cloth) {
   cloth.bend = table.number({"bend", "N/m", "of the springs that skip a vertex"}, 0.0, Range::at_least(0));
 }
 
+// Reads in which shape the triangles of a surface are at rest, and how its border is sewn.
+void read_cut(const ConfigTable& table, ClothDef& cloth) {
+  cloth.cut = table.word<ClothCut>(
+      {"cut", "",
+       "the shape at rest of each triangle: surface: as it lies in the file; texture: as it lies flat in the texture"},
+      cloth.cut);
+  cloth.cut_place = table.place("cut");
+  cloth.cut_scale = table.number_if_given(
+      {"cut_scale", "m",
+       "of one unit of texture coordinates, on the finished body; without it the cut has the area of the surface"},
+      Range::above(0, 1e6));
+  cloth.sew = table.number_if_given(
+      {"sew", "m", "vertices on the border of a surface that are within this distance become one"},
+      Range::above(0, 1e6));
+  for (const char* key : {"cut", "cut_scale", "sew"}) {
+    if (table.has(key) && cloth.surface.empty())
+      table.complain(key, fmt::format("{}: of a cloth with a surface; there is none here", key));
+  }
+  if (table.has("cut_scale") && cloth.cut != ClothCut::texture)
+    table.complain("cut_scale", "cut_scale: of cut = \"texture\"; without it each triangle is at rest as it lies");
+  if (cloth.cut == ClothCut::texture && cloth.grain.z() != 0)
+    table.complain("grain", "grain: with cut = \"texture\" it lies in the texture, as [u, v, 0]");
+}
+
 std::optional<ClothDef> read_cloth(const ConfigTable& body) {
   const auto table = body.table({"cloth", "", "a grid, or the triangles of a file; of a material, or of springs"});
   if (!table) return std::nullopt;
@@ -192,6 +158,7 @@ std::optional<ClothDef> read_cloth(const ConfigTable& body) {
   cloth.grain = table->vector({"grain", "", "direction of the warp, in the frame of the file or grid; any length"},
                               Vec3(0, 1, 0));
   if (cloth.grain.norm() < 1e-9) table->complain("grain", "grain: must not be zero");
+  read_cut(*table, cloth);
   const bool has_springs = table->has("stretch") || (table->has("bend") && !body.has("material"));
   if (has_springs) read_springs(*table, cloth);
   if (has_springs && !cloth.surface.empty())
@@ -206,14 +173,16 @@ std::optional<ClothDef> read_cloth(const ConfigTable& body) {
 }
 
 // Reads the printed pattern. The default is a grid on boxes and checks on cloth.
-Pattern read_pattern(const ConfigTable& table, const BodyDef& body) {
+Pattern read_pattern(const ConfigTable& table, BodyDef& body) {
   const std::string usual = "usual";
   std::vector<std::string> words = all_names<Pattern>();
   words.insert(words.begin(), usual);
-  const std::string word =
-      table.choice({"pattern", "",
-                    "printed squares that show how it is strained; usual: a grid on boxes, checks on cloth, else none"},
-                   usual, {words});
+  const std::string word = table.choice({"pattern", "",
+                                         "printed squares that show how it is strained; usual: a grid on boxes, checks "
+                                         "on cloth without colours of a file, "
+                                         "else none"},
+                                        usual, {words});
+  body.usual_pattern = word == usual;
   if (word == usual) return body.box ? Pattern::grid : body.cloth ? Pattern::checks : Pattern::none;
   const Pattern pattern = *value_named<Pattern>(word);
   if (!body.shape.empty() && pattern != Pattern::none)
@@ -390,7 +359,7 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
                                          "color here; file: the file's where "
                                          "it has some; body: color"},
                                         body.colors);
-  if (table.has("colors") && !table.has("surface"))
+  if (table.has("colors") && !table.has("surface") && !(body.cloth && !body.cloth->surface.empty()))
     table.complain("colors", "colors: of a 'surface'; there is none here");
   body.gloss = table.number_if_given({"gloss", "", "of the uncovered surface: 0 matt to 1 wet [0.25; cloth 0.08]"},
                                      Range::between(0, 1));

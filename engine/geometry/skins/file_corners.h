@@ -1,0 +1,38 @@
+// Knows where the corners of a cloth's triangles come from: the places in the file's triangles that they had before
+// these were welded and got new edges. So what the file says of its triangles can be read there. Not here: surfaces
+// that were closed or cut, whose triangles find the file's by their places (surface_colors.h).
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "geometry/files/colored_surface.h"
+#include "geometry/triangles/remesh.h"
+#include "geometry/triangles/welded_surface.h"
+
+namespace supple {
+
+// By triangle and corner: the place in the triangles of the file. A triangle's three places have one part and one
+// texture.
+using FileCorners = std::vector<std::array<RemeshedPlace, 3>>;
+
+// Returns where the corners of a welded surface lie in the surface that was welded.
+FileCorners corners_in(const TriMesh& raw, const WeldedSurface& welded);
+
+// Returns where the corners of a remeshed surface lie in the file. before: those of the surface that was remeshed.
+FileCorners corners_in(const FileCorners& before, const RemeshedSurface& remeshed);
+
+// Returns the edges between two triangles at which the file's texture coordinates jump, or its parts meet: two vertices
+// each, the lower one first and in increasing order. As lines that stay (RemeshOptions) they keep what the file says
+// the same on each of their sides. In a texture in which each triangle lies apart, they are all edges.
+std::vector<std::array<std::int32_t, 2>> file_seams(const TriMesh& surface, const FileCorners& corners,
+                                                    const ColoredSurface& file);
+
+// Returns the texture coordinates at a place; not a number where the file has none.
+Eigen::Vector2d texture_place(const RemeshedPlace& place, const ColoredSurface& file);
+
+// Returns the parts of triangles by where their corners come from; null where no part of the file has a name.
+std::shared_ptr<const SurfaceParts> parts_on(const FileCorners& corners, const ColoredSurface& file);
+
+}  // namespace supple
