@@ -146,7 +146,7 @@ void EnergyBudget::after_step(const Model& model, const StepInputs& inputs, cons
   set_motion(model, state, inputs.gravity, parts_);
   // Backward Euler has evaluated the elements where the step ends; the step of an island, not those of each body.
   const bool is_known = model.scheme.theta == 1 && std::isfinite(w.current.elastic);
-  parts_.elastic = is_known ? w.current.elastic : elastic_energy(model, w, state.x);
+  parts_.elastic = is_known ? w.current.elastic + bending_energy(model, state.x) : elastic_energy(model, w, state.x);
   parts_.springs = spring_energy(model, inputs.targets, state.x);
   parts_.gas = w.air.gas_energy(model, state.x);
   parts_.contact = contact_energy(w.current.contacts, state.x);
