@@ -125,6 +125,7 @@ Json state_json(const StepLabel& label, const StepProblem& problem) {
                {"colliders", Json::array()},
                {"state_hash", hash_text_form(problem.hash)}};
   if (!body.cloth.empty()) json["fabric"] = fabric_json(body.fabric);
+  if (body.curved) json["fabric"]["curved"] = true;
   for (const StepProblem::Obstacle& collider : problem.colliders) {
     json["colliders"].push_back({{"name", collider.name},
                                  {"thickness", collider.thickness},

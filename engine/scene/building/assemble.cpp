@@ -211,6 +211,9 @@ void update_body(Body& body, const SceneDef& scene, const BodyDef& def) {
     throw InputError({at(def.place, fmt::format("bend of the cloth of body '{}' cannot leave 0 while the film runs: it "
                                                 "can start from a small number",
                                                 def.name))});
+  if (def.cloth && def.cloth->curved != body.def.cloth->curved)
+    throw InputError(
+        {at(def.place, fmt::format("curved of the cloth of body '{}' cannot change while the film runs", def.name))});
   if (def.plastic.has_value() != body.def.plastic.has_value() || def.creep.has_value() != body.def.creep.has_value())
     throw InputError({at(def.place, fmt::format("body '{}': 'plastic' and 'creep' can change while the film runs, but "
                                                 "neither come nor go",

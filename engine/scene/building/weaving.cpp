@@ -29,6 +29,7 @@ void weave_triangles(Body& body) {
   BodyDescription& description = body.description;
   const Vec3 grain = (body.placement.linear() * def.grain).normalized();
   description.fabric = def.fabric->fabric;
+  description.curved = def.curved;
   description.cloth.clear();
   const Triangles& triangles = body.cloth.surface.triangles;
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {

@@ -138,6 +138,7 @@ struct ClothDef {
   FilePlace cut_place;                      // in the file, for messages once the surface is known
   std::optional<double> sew;                // of vertices on the border that become one, the distance at most [m]
   std::optional<FabricDef> fabric;          // nothing: it is made of springs
+  bool curved = false;                      // a fabric bends from the shape that the file has; else it is flat at rest
   double stretch = 0, shear = 0, bend = 0;  // stiffness of a spring [N/m]
 };
 

@@ -131,6 +131,20 @@ void read_cut(const ConfigTable& table, ClothDef& cloth) {
     table.complain("grain", "grain: with cut = \"texture\" it lies in the texture, as [u, v, 0]");
 }
 
+// Reads whether a cloth bends from the shape of its file: that needs a file, and a fabric that bends.
+void read_curved(const ConfigTable& table, ClothDef& cloth) {
+  cloth.curved = table.boolean(
+      {"curved", "", "true: it bends from the shape that the file has; false: it is flat at rest"}, false);
+  if (!cloth.curved) return;
+  if (!table.has("mesh") && !table.has("surface")) {
+    table.complain("curved", "curved: of the triangles of a file; a grid is flat");
+  } else if (!cloth.fabric) {
+    table.complain("curved", "curved: of cloth with a material; springs know no shape");
+  } else if (cloth.fabric->fabric.bending <= 0) {
+    table.complain("curved", "curved: of a material with some bend; this one has none");
+  }
+}
+
 std::optional<ClothDef> read_cloth(const ConfigTable& body) {
   const auto table = body.table({"cloth", "", "a grid, or the triangles of a file; of a material, or of springs"});
   if (!table) return std::nullopt;
@@ -169,6 +183,7 @@ std::optional<ClothDef> read_cloth(const ConfigTable& body) {
     }
     cloth.fabric = read_fabric(body);
   }
+  read_curved(*table, cloth);
   return cloth;
 }
 

@@ -4,8 +4,12 @@
 // whole. Inside the sheet it is sum_v |L_v x|^2 / A_v, with the cotangent Laplacian L_v of each vertex and the area
 // A_v that is nearest to it. A vertex on a border has no such Laplacian; for its share of the area, the hinges
 // between triangles count. Elsewhere squares of single hinges, as in that paper, would make a sheet up to three times
-// too stiff in some directions, and sheets that fold at every other vertex too soft. All cloth is flat at rest. Not
-// here: the evaluation beside elements (solver/objective.cpp).
+// too stiff in some directions, and sheets that fold at every other vertex too soft. Cloth that is curved at rest must
+// also know the direction of its curvature S, because the mean alone would let a rolled sheet roll up along the other
+// axis. It has the energy of a plate of Poisson's ratio 0, B/2 |S - S_rest|^2 = B/4 (trace)^2 + B/2 |deviator|^2: half
+// of the squares above and, for the deviator, the second derivatives of the quadratic function through the corners of a
+// triangle and its neighbours' tips (Zorin 2005, "Curvature-based energy for simulation and variational modeling"). Not
+// here: the evaluation beside elements (solver/objective.cpp), and the turning of curved squares (rest_curvature.h).
 #pragma once
 
 #include <vector>
@@ -16,12 +20,15 @@ namespace supple {
 
 using JoinedVertices = std::pair<std::int32_t, std::int32_t>;
 
-// Lists the pairs of vertices that the triangles of a cloth join, each at least once, in their numbering; with_bending:
-// also those that bending joins.
-std::vector<JoinedVertices> joined_by_cloth(const std::vector<FlatTriangle>& triangles, bool with_bending);
+// Lists the pairs of vertices that the triangles of a cloth and its bending join, each at least once, in the numbering
+// of its mesh.
+std::vector<JoinedVertices> joined_by_cloth(const BodyDescription& body);
 
 // Returns Q over all vertices in the model's numbering, both triangles of it, for a bending stiffness of 1 N m [1/m^2].
-Eigen::SparseMatrix<double> bending_matrix(const Model& model, const std::vector<FlatTriangle>& triangles);
+Eigen::SparseMatrix<double> bending_matrix(const Model& model, const BodyDescription& body);
+
+// Returns the energy of a curved cloth whose shape at rest is model.rest, for a bending stiffness of 1 N m.
+RestCurvature rest_curvature(const Model& model, const BodyDescription& body);
 
 // Computes row v of Q z, from differences, so that it does not depend on where the cloth is [N].
 inline void bending_row(const Model::SparseRows& bending, const double* z, int v, double (&row)[3]) {

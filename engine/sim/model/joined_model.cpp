@@ -155,6 +155,31 @@ void join_rows(const std::vector<const Model*>& bodies, Model::SparseRows Model:
   for (std::size_t p = 0; p < bodies.size(); ++p) add_rows(p, joined.parts[p].free, joined.parts[p].held);
 }
 
+// Joins the energies of cloth that is curved at rest.
+void join_curvature(const std::vector<const Model*>& bodies, Model& joined) {
+  RestCurvature& all = joined.curvature;
+  for (std::size_t p = 0; p < bodies.size(); ++p) {
+    const RestCurvature& own = bodies[p]->curvature;
+    if (own.empty()) continue;
+    if (all.empty()) all.first_term.push_back(0);
+    const auto squares = static_cast<std::int32_t>(all.squares()), turns = static_cast<std::int32_t>(all.turns.size());
+    const auto terms = static_cast<std::int32_t>(all.terms.size());
+    for (int s = 1; s <= own.squares(); ++s) all.first_term.push_back(terms + own.first_term[s]);
+    for (const auto& [vertex, factor] : own.terms)
+      all.terms.push_back({joined_vertex(joined.parts[p], vertex), factor});
+    for (RestCurvature::Turn turn : own.turns) {
+      turn.square += squares;
+      all.turns.push_back(turn);
+    }
+    for (RestCurvature::Triangle triangle : own.triangles) {
+      for (std::int32_t& corner : triangle.corner) corner = joined_vertex(joined.parts[p], corner);
+      triangle.first_turn += turns;
+      all.triangles.push_back(triangle);
+    }
+  }
+  if (!all.empty()) all.index(joined.vertices);
+}
+
 void join_systems(const std::vector<const Model*>& bodies, Model& joined) {
   std::vector<const CholeskyFactor*> factors;
   joined.matrix.resize(joined.free, joined.free);
@@ -227,6 +252,7 @@ Model join(const std::vector<const Model*>& bodies) {
   joined.mean_stiffness = stiffness / joined.elements;
   join_rows(bodies, &Model::damping, joined);
   join_rows(bodies, &Model::bending, joined);
+  join_curvature(bodies, joined);
   join_systems(bodies, joined);
   return joined;
 }

@@ -31,7 +31,7 @@ void number_vertices(Model& model, const BodyDescription& body, const std::vecto
     }
   }
   for (const Spring& spring : body.springs) join(spring.from, spring.to);
-  for (const auto& [from, to] : joined_by_cloth(body.cloth, body.fabric.bending > 0)) join(from, to);
+  for (const auto& [from, to] : joined_by_cloth(body)) join(from, to);
   for (const std::int32_t i : fill_reducing_order(model.free, edges)) model.input_of.push_back(free_input[i]);
   for (std::int32_t v = 0; v < model.vertices; ++v) {
     if (held[v]) model.input_of.push_back(v);

@@ -16,6 +16,7 @@
 #include "sim/elements/element_records.h"
 #include "sim/materials/material.h"
 #include "sim/model/flow.h"
+#include "sim/model/rest_curvature.h"
 #include "sim/model/system.h"
 
 namespace supple {
@@ -56,6 +57,7 @@ struct BodyDescription {
   std::vector<Spring> springs;      // beside the tetrahedra or, for cloth of springs, instead of them
   std::vector<FlatTriangle> cloth;  // the triangles of cloth that is a continuum, instead of both
   Fabric fabric;                    // of these triangles
+  bool curved = false;              // these triangles bend from the shape of the mesh at rest; else from a flat one
   Triangles surface;                // the surface that contact sees; empty: the boundary of the tetrahedra
   // How far what is drawn reaches beyond this surface, by vertex; contact with other bodies begins there. Empty:
   // nowhere [m]
@@ -183,6 +185,9 @@ struct Model : System {
   };
   SparseRows damping;  // (beta/h) L [N/m]
   SparseRows bending;  // Q of bending.h, without its diagonal [N/m]
+  // What stands for Q in the energy of cloth that is curved at rest, and in its forces; empty where there is none. A
+  // and Hessians have Q all the same.
+  RestCurvature curvature;
 
   bool flows() const { return plastic.has_value() || creep.has_value(); }
   ElementChunk chunk(int index) const;

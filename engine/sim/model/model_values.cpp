@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <numeric>
 
 #include "base/error.h"
@@ -164,7 +165,8 @@ std::uint64_t new_values() {
 
 ModelValues::ModelValues(const Model& model, const BodyDescription& body) : elements_(records_of(body)) {
   sort_elements(model, elements_);
-  if (body.fabric.bending > 0) unit_bending_ = bending_matrix(model, body.cloth);
+  if (body.fabric.bending > 0) unit_bending_ = bending_matrix(model, body);
+  if (body.fabric.bending > 0 && body.curved) unit_curvature_ = rest_curvature(model, body);
   elastic_ = pattern_of(model, elements_, unit_bending_);
   place_.reserve(elements_.size() * 16);
   for (const ElementRecord& element : elements_) {
@@ -207,6 +209,7 @@ void ModelValues::add_up_elastic(Model& model) {
 // Adds Q to L, whose pattern has that of Q in it, and sets the rows by which the objective evaluates it.
 void ModelValues::add_bending(Model& model) {
   model.bending = {};
+  model.curvature = {};
   if (unit_bending_.nonZeros() == 0) return;
   const double stiffness = model.fabrics.front().bending;
   double* values = elastic_.valuePtr();
@@ -222,6 +225,13 @@ void ModelValues::add_bending(Model& model) {
     }
     model.bending.begin.push_back(static_cast<std::int32_t>(model.bending.column.size()));
   }
+  if (unit_curvature_.empty() || stiffness <= 0) return;
+  model.curvature = unit_curvature_;
+  for (RestCurvature::Term& term : model.curvature.terms) term.factor *= std::sqrt(stiffness);
+  for (RestCurvature::Turn& turn : model.curvature.turns) {
+    for (double& place : turn.place) place *= std::sqrt(stiffness);
+  }
+  model.curvature.index(model.vertices);
 }
 
 namespace {

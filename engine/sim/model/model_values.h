@@ -33,6 +33,7 @@ class ModelValues {
   std::vector<ElementRecord> elements_;
   Eigen::SparseMatrix<double> elastic_;       // L over all vertices, both triangles [N/m]
   Eigen::SparseMatrix<double> unit_bending_;  // Q for a bending stiffness of 1 N m; empty without bending [1/m^2]
+  RestCurvature unit_curvature_;              // the same of cloth that is curved at rest; else empty
   std::vector<std::int32_t> place_;           // place of each element's pairs of corners among elastic_'s numbers
   std::vector<double> share_;  // what each pair adds at its place, for k = 1 [m], or a spring's stiffness of 1
 };

@@ -14,6 +14,7 @@ struct Iterate {
   Positions gradient;             // of g, n_free x 3 [N]
   AlignedVector<double> energy;   // of the elements, by lane [J]
   Positions bent;                 // forces of bending, n_free x 3 [N]; empty without bending
+  std::vector<double> curved;     // energies of RestCurvature, by triangle [J]; empty without such cloth
   std::vector<Contact> contacts;  // found at x; empty without colliders
   double g = 0;                   // the objective at x, with these contacts [J]
   double elastic = 0;             // the share in g of the elements [J]; not finite: not known

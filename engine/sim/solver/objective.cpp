@@ -72,7 +72,12 @@ struct VertexTerms {
     for (int c = 0; c < 3; ++c) gradient[c] = weight * (p[c] - y[c]);
     if (springs && model.handle_stiffness[v] > 0) value += add_spring(v, gradient);
     if (damped) value += add_drag(v, gradient);
-    if (place != nullptr) value += add_bending(v, gradient);
+    if (place == nullptr) return value;
+    if (model.curvature.holds(v)) {
+      add_curvature(v, gradient);
+    } else {
+      value += add_bending(v, gradient);
+    }
     return value;
   }
 
@@ -81,11 +86,18 @@ struct VertexTerms {
     double unused[3];
     for (int v = model.free; v < model.vertices; ++v) {
       for (double& u : unused) u = 0;
-      value += add_bending(v, unused);
+      if (!model.curvature.holds(v)) value += add_bending(v, unused);
     }
   }
 
  private:
+  // Adds the forces of bending that evaluate_bending() has found. They need no factor, because e theta = 1.
+  void add_curvature(int v, double (&gradient)[3]) const {
+    double slope[3];
+    curvature_slope(model.curvature, w.curvature, v, slope);
+    for (int c = 0; c < 3; ++c) gradient[c] += slope[c];
+  }
+
   // Computes e/2 z^T Q z from the squared distances of the vertices that v is joined with, or for the difference e/2 (z
   // - r)^T Q (z + r), to which held vertices, where z = r, add nothing. The force needs no factor, because e theta = 1.
   double add_bending(int v, double (&gradient)[3]) const {
@@ -160,6 +172,16 @@ double evaluate_elements(const Model& model, OpenWorkspace& workspace, const Pos
   return model.scheme.energy * sum;
 }
 
+// Computes the bending of cloth that is curved at rest, and its forces, at `place`; returns e times its energy, or the
+// difference of the energy from a reference's (null: none).
+double evaluate_bent(const Model& model, OpenWorkspace& workspace, const Positions& place, std::vector<double>& energy,
+                     const std::vector<double>* reference) {
+  evaluate_curvature(model.curvature, workspace.threads, place.data(), workspace.curvature, energy);
+  double sum = 0;
+  for (std::size_t t = 0; t < energy.size(); ++t) sum += reference != nullptr ? energy[t] - (*reference)[t] : energy[t];
+  return model.scheme.energy * sum;
+}
+
 // Adds the vertices' terms, and gathers the whole gradient from these and the elements' forces.
 void add_vertices(const Model& model, OpenWorkspace& workspace, const VertexTerms& terms, Positions* gradient,
                   Change& change) {
@@ -203,6 +225,9 @@ Change evaluate_against(const Model& model, OpenWorkspace& workspace, Iterate& a
                                   reference != nullptr ? &reference->energy : nullptr),
                 0};
   at.elastic = change.value + (reference != nullptr ? reference->elastic : 0);
+  if (!model.curvature.empty())
+    change.value += evaluate_bent(model, workspace, theta < 1 ? workspace.middle : at.x, at.curved,
+                                  reference != nullptr ? &reference->curved : nullptr);
   Positions* gradient = wanted == Wanted::gradient ? &at.gradient : nullptr;
   const Positions* reference_x = reference != nullptr ? &reference->x : nullptr;
   const bool bends = !model.bending.begin.empty();
@@ -305,9 +330,14 @@ double work_on_held(const Model& model, OpenWorkspace& workspace, const Position
       for (int k = 0; k < 3; ++k) work += force[list_stride * i + k] * (x(v, k) - q(v, k));
     }
   }
+  if (!model.curvature.empty()) evaluate_bent(model, workspace, x, workspace.trial.curved, nullptr);
   for (int v = model.bending.begin.empty() ? model.vertices : model.free; v < model.vertices; ++v) {
     double row[3];
-    bending_row(model.bending, x.data(), v, row);
+    if (model.curvature.holds(v)) {
+      curvature_slope(model.curvature, workspace.curvature, v, row);
+    } else {
+      bending_row(model.bending, x.data(), v, row);
+    }
     for (int k = 0; k < 3; ++k) work += row[k] * (x(v, k) - q(v, k));
   }
   return work;

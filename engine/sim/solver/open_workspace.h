@@ -76,6 +76,7 @@ struct OpenWorkspace {
   // The following members are memory within one call and hold nothing between calls.
   Positions middle;             // where forces are evaluated, n x 3 [m]; empty where that is the iterate itself
   Positions reference_middle;   // the same for the iterate that a trial is compared with; empty without bending
+  CurvatureRoom curvature;      // forces of cloth that is curved at rest
   Positions scratch;            // n_free x 3
   AlignedVector<double> force;  // by slot, x list_stride [N]
   AlignedVector<double> local;  // positions by chunk, x list_stride [m]
