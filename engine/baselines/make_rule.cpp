@@ -97,17 +97,17 @@ std::unique_ptr<SearchRule> newton_rule(const Method& method, const Model& model
 }  // namespace
 
 std::optional<std::string> why_unsuited(const Method& method, const Model& model) {
-  if (method.acceleration != Acceleration::admm || model.fabrics.empty()) return std::nullopt;
-  return "admm: has no local step for the triangles of cloth, which body '" + model.name + "' has";
+  if (method.acceleration == Acceleration::admm && !model.fabrics.empty())
+    return "admm: has no local step for the triangles of cloth, which body '" + model.name + "' has";
+  if (method.matrix == StartMatrix::vertex_blocks && !model.curvature.empty())
+    return "vertex blocks: have no local step for cloth that is curved at rest, which body '" + model.name + "' has";
+  return std::nullopt;
 }
 
 std::unique_ptr<SearchRule> make_rule(const Method& method, const Model& model) {
   if (const auto problem = problem_of(method)) throw InputError("method", problem->message);
   if (const auto reason = why_unsuited(method, model)) throw InputError("method", *reason);
   const bool chebyshev = method.acceleration == Acceleration::chebyshev;
-  if (method.matrix == StartMatrix::vertex_blocks && !model.curvature.empty())
-    throw InputError("method", "vertex blocks: have no local step for cloth that is curved at rest, which body '" +
-                                   model.name + "' has");
   if (method.matrix == StartMatrix::vertex_blocks) return std::make_unique<VertexBlockRule>(model, chebyshev);
   if (method.acceleration == Acceleration::admm) return std::make_unique<SplittingRule>();
   if (chebyshev) return std::make_unique<ChebyshevRule>();
