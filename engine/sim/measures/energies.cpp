@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/contact/find_contacts.h"
+#include "sim/model/bending.h"
 #include "sim/solver/begin_step.h"
 #include "sim/solver/energy_gain.h"
 
