@@ -107,7 +107,8 @@ long count_beside(const Border& border, const Positions& points, double distance
     const std::set<std::int32_t>& near = border.near.at(v);
     return std::ranges::any_of(border.edges, [&](const auto& edge) {
       if (distance_to(points.row(v), points.row(edge[0]), points.row(edge[1])) > distance) return false;
-      // Where one end is a neighbour, the edge follows on the vertex's own border; where both are, a slit is between.
+      // An edge with one end beside the vertex continues the vertex's own border. With both ends beside it, the edge
+      // and the vertex bound a slit.
       return edge[0] != v && edge[1] != v && near.contains(edge[0]) == near.contains(edge[1]);
     });
   });

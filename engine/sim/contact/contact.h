@@ -34,7 +34,7 @@ struct Contact {
   std::int32_t number = 0;  // of the point in this step: a vertex, or above all vertices' numbers
   // Friction is lagged; it opposes u - origin along the plane.
   double friction = 0;  // coefficient times normal force [N]
-  // What u would be if the point had moved with the other side; not set for colliders without friction [m].
+  // This is where u would be if the point had moved with the other side [m]. Colliders without friction leave it at 0.
   Vec3 origin = Vec3::Zero();
   double stick = 0;  // friction is whole above this slip in a step [m]
 };
