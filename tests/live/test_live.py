@@ -283,7 +283,7 @@ def test_a_grab_may_be_let_go_twice(live, scene, tmp_path):
     assert page.wait_state(lambda state: state["pins"])["pins"] == [{"body": grabbed["body"], "name": "hand-1"}]
     for _ in range(2):
         page.do(do="release", body=grabbed["body"], name="hand-1")
-    assert page.state()["pins"] == []
+    page.wait_state(lambda state: state["pins"] == [])
     for _ in range(3):
         page.do(do="step")
     page.wait_frames(3)
