@@ -11,6 +11,7 @@
 #include "film/plan/slow_work_line.h"
 #include "geometry/files/mesh_file.h"
 #include "scene/building/unplaced_body.h"
+#include "scene/definition/scene_def.h"
 #include "scene/reading/model_scene.h"
 
 namespace supple {

@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "film/frame_cost.h"
 #include "film/plan/shipped_files.h"
+#include "geometry/shapes/solid_motion.h"
 #include "output/run/profile.h"
 #include "scene/building/skin_report.h"
 #include "scene/replay/script.h"

@@ -162,12 +162,12 @@ TEST(House, RoomsOfAFolderLookOneWay) {
   for (const auto& [folder, arrows] : rooms) EXPECT_GT(checked[folder], 5) << folder;
 }
 
-// The definition of a scene does not depend on how files are read.
-TEST(House, DefinitionsOfScenesIncludeNoReader) {
+// Returns these headers of the engine and all headers that they include, and so on.
+std::set<std::string> reached_from(const std::set<std::string>& headers) {
   std::multimap<std::string, std::string> includes;
   for (const Include& include : all_includes()) includes.emplace(include.file, include.name);
-  std::vector<std::string> open = {"scene/definition/scene_def.h"};
-  std::set<std::string> seen(open.begin(), open.end());
+  std::vector<std::string> open(headers.begin(), headers.end());
+  std::set<std::string> seen = headers;
   while (!open.empty()) {
     const auto [begin, end] = includes.equal_range("engine/" + open.back());
     open.pop_back();
@@ -175,9 +175,26 @@ TEST(House, DefinitionsOfScenesIncludeNoReader) {
       if (seen.insert(at->second).second) open.push_back(at->second);
     }
   }
+  return seen;
+}
+
+// The definition of a scene does not depend on how files are read.
+TEST(House, DefinitionsOfScenesIncludeNoReader) {
+  const std::set<std::string> seen = reached_from({"scene/definition/scene_def.h"});
   EXPECT_GT(seen.size(), 20u);
   for (const char* reader : {"scene/config/config.h", "scene/config/toml_document.h", "toml++/toml.h"})
     EXPECT_FALSE(seen.contains(reader)) << reader;
+}
+
+// Other programs include neither the memory of steps nor how files are read (cmake/install_headers.cmake).
+TEST(House, InstalledHeadersShowNoInnerRooms) {
+  const std::regex inner(
+      "sim/(air|coarse|contact)/.*|sim/elements/element_kernels\\.h|sim/solver/open_workspace\\.h|"
+      "geometry/triangles/.*|scene/config/config\\.h|world/islands\\.h");
+  const std::set<std::string> seen =
+      reached_from({"base/error.h", "base/threads.h", "baselines/make_rule.h", "sim/sim.h", "world/world.h"});
+  EXPECT_TRUE(seen.contains("sim/model/model.h"));
+  for (const std::string& header : seen) EXPECT_FALSE(std::regex_match(header, inner)) << header;
 }
 
 // The benchmarks use the engine directly and do not depend on the verbs. The verbs know their names, and their program

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "sim/model/inputs.h"
 #include "sim/solver/search_rule.h"
 
 namespace supple {

@@ -7,10 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "sim/model/inputs.h"
 #include "sim/model/method.h"
-#include "sim/solver/lbfgs.h"
+#include "sim/solver/search_rule.h"
 
 namespace supple {
+
+struct Model;
 
 // Says why a method cannot solve a model; nothing where it can.
 std::optional<std::string> why_unsuited(const Method& method, const Model& model);

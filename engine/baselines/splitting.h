@@ -3,6 +3,7 @@
 // step finds with the factor of A. The weights of the ties are those of L.
 #pragma once
 
+#include "base/aligned.h"
 #include "baselines/local_kernels.h"
 #include "sim/solver/search_rule.h"
 

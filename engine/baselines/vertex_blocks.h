@@ -9,6 +9,8 @@
 
 namespace supple {
 
+struct Contact;
+
 // An iteration sweeps once over all colours. Its direction leads to where the sweep ends, and is followed to its end.
 // Blocks of elements that are not positive semi-definite are projected, so that each system of a vertex is definite.
 class VertexBlockRule final : public SearchRule {

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "output/files/json_text.h"
-#include "scene/definition/scene_def.h"
+#include "scene/definition/field_def.h"
 
 namespace supple {
 namespace {

@@ -5,7 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "scene/definition/scene_def.h"
+#include "base/types.h"
+#include "scene/definition/keyed_motion.h"
 
 namespace supple {
 

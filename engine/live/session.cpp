@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "output/files/json_text.h"
 #include "scene/building/warnings.h"
+#include "scene/config/config.h"
 
 namespace supple {
 namespace {

@@ -1,6 +1,8 @@
 #include "world/attached_handles.h"
 
 #include "base/error.h"
+#include "geometry/shapes/solid_motion.h"
+#include "geometry/solids/triangle_solid.h"
 
 namespace supple {
 namespace {

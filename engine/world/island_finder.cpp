@@ -6,6 +6,7 @@
 #include "base/disjoint_sets.h"
 #include "base/trace.h"
 #include "scene/definition/meeting.h"
+#include "scene/definition/scene_def.h"
 #include "sim/contact/sheet_layer.h"
 #include "sim/solver/begin_step.h"
 

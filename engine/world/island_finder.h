@@ -11,6 +11,8 @@
 
 namespace supple {
 
+struct SceneDef;
+
 class IslandFinder {
  public:
   // All that is passed must outlive this object. bodies: those of the scene, in its order.

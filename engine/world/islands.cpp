@@ -9,6 +9,7 @@
 #include "base/timing.h"
 #include "base/trace.h"
 #include "scene/definition/meeting.h"
+#include "scene/definition/scene_def.h"
 #include "sim/contact/own_sheet.h"
 #include "sim/contact/own_surface.h"
 #include "sim/contact/part_contacts.h"

@@ -18,17 +18,14 @@
 #include "geometry/triangles/moving_surface.h"
 #include "world/body_touch.h"
 #include "world/island_finder.h"
+#include "world/joined_step.h"
 #include "world/moving_body.h"
 #include "world/restitution.h"
 
 namespace supple {
 
-// Names the step of an island that was made last, for those who repeat it. It holds until the next step is made.
-struct JoinedStep {
-  std::vector<std::size_t> bodies;     // the parts of the model, in their order
-  const Model* model = nullptr;        // the joined one; null: no island has made a step
-  const StepInputs* inputs = nullptr;  // of the step
-};
+struct Contact;
+struct SceneDef;
 
 class Islands {
  public:

@@ -8,8 +8,10 @@
 #include "base/timing.h"
 #include "base/trace.h"
 #include "scene/definition/air_of_body.h"
+#include "scene/replay/live_keys.h"
 #include "sim/measures/measures.h"
 #include "sim/model/flow_step.h"
+#include "sim/model/model_values.h"
 #include "sim/solver/calming.h"
 #include "sim/solver/step.h"
 
@@ -46,7 +48,7 @@ void MovingBody::apply(const ChangeCost& cost) {
 }
 
 void MovingBody::renew_model() {
-  if (!values_) values_.emplace(model_, body_.description);
+  if (!values_) values_ = std::make_unique<ModelValues>(model_, body_.description);
   values_->set(model_, body_.description);
   show_flow(state_.flow, model_);
 }

@@ -9,13 +9,19 @@
 
 #include "scene/building/assemble.h"
 #include "scene/building/collision_set.h"
-#include "scene/replay/live_keys.h"
-#include "sim/contact/contact.h"
-#include "sim/model/model_values.h"
+#include "sim/model/inputs.h"
+#include "sim/model/model.h"
+#include "sim/model/report.h"
+#include "sim/model/state.h"
 #include "sim/solver/workspace.h"
 #include "world/solvers.h"
 
 namespace supple {
+
+class ModelValues;
+struct ChangeCost;
+struct Contact;
+struct SceneDef;
 
 class MovingBody {
  public:
@@ -106,9 +112,9 @@ class MovingBody {
   std::unique_ptr<SearchRule> rule_;
   std::function<void(double time, Positions& targets)> put_attached_;  // empty: no handle is attached
   Workspace workspace_;
-  std::optional<ModelValues> values_;  // made when the model first changes
-  std::optional<Model> rigid_;         // the as-rigid-as-possible model; made when it is first needed
-  std::uint64_t rigid_for_ = 0;        // id of the model that rigid_ was made for
+  std::unique_ptr<ModelValues> values_;  // made when the model first changes
+  std::optional<Model> rigid_;           // the as-rigid-as-possible model; made when it is first needed
+  std::uint64_t rigid_for_ = 0;          // id of the model that rigid_ was made for
   bool untangled_ = false, is_in_island_ = false;
   std::vector<double> lost_to_flow_;  // scratch
   double flow_ms_ = 0;                // of the flow before the step that was prepared

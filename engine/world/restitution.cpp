@@ -6,6 +6,7 @@
 
 #include "base/trace.h"
 #include "scene/definition/meeting.h"
+#include "scene/definition/scene_def.h"
 #include "sim/contact/find_contacts.h"
 #include "sim/solver/open_workspace.h"
 

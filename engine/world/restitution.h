@@ -26,6 +26,8 @@
 
 namespace supple {
 
+struct SceneDef;
+
 class Restitution {
  public:
   // Both must outlive this object. bodies: those of the scene, in its order.

@@ -7,12 +7,11 @@
 
 #include "sim/model/inputs.h"
 #include "sim/model/method.h"
-#include "sim/model/model.h"
-#include "sim/model/state.h"
 
 namespace supple {
 
 class SearchRule;
+struct Model;
 
 // Solvers{make_rule, settings_of} are all of them (baselines/make_rule.h).
 struct Solvers {

@@ -8,6 +8,7 @@
 #include "base/trace.h"
 #include "sim/solver/step.h"
 #include "world/attached_handles.h"
+#include "world/islands.h"
 
 namespace supple {
 

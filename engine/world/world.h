@@ -21,7 +21,9 @@
 #include <vector>
 
 #include "scene/replay/script.h"
-#include "world/islands.h"
+#include "world/body_touch.h"
+#include "world/joined_step.h"
+#include "world/moving_body.h"
 #include "world/world_state.h"
 
 namespace supple {

@@ -5,9 +5,16 @@
 #include <set>
 
 #include "film/plan/film_plan.h"
+#include "geometry/skins/pattern.h"
 #include "render/gl_context.h"
+#include "scene/definition/keyed_motion.h"
+#include "scene/definition/selection.h"
 #include "scene/reading/sweep.h"
+#include "sim/model/inputs.h"
+#include "sim/model/method.h"
 #include "sim/model/report.h"
+#include "sim/model/start_matrix.h"
+#include "sim/model/time_scheme.h"
 
 namespace supple {
 namespace names_test {

@@ -13,6 +13,7 @@
 #include "baselines/make_rule.h"
 #include "baselines/newton.h"
 #include "baselines/system_matrix.h"
+#include "geometry/triangles/surface_thickness.h"
 #include "sim/model/element_view.h"
 #include "sim/solver/first_iterate.h"
 #include "support/bodies.h"

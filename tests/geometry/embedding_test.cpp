@@ -9,6 +9,7 @@
 #include "geometry/meshes/boundary_walk.h"
 #include "geometry/skins/skin_stretch.h"
 #include "geometry/tetrahedra/tetrahedralize.h"
+#include "geometry/triangles/surface_thickness.h"
 #include "support/surfaces.h"
 
 namespace supple {

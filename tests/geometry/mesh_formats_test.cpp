@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "geometry/files/mesh_file.h"
 #include "geometry/tetrahedra/tetrahedralize.h"
+#include "geometry/triangles/surface_thickness.h"
 #include "support/bodies.h"
 
 namespace supple {

@@ -10,6 +10,7 @@
 #include "geometry/skins/skin.h"
 #include "geometry/tetrahedra/lattice_probe.h"
 #include "geometry/tetrahedra/tetrahedralize.h"
+#include "geometry/triangles/surface_thickness.h"
 #include "scene/reading/shape_reader.h"
 #include "support/bodies.h"
 #include "support/surfaces.h"

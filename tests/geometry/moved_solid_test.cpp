@@ -6,6 +6,8 @@
 #include <random>
 
 #include "geometry/solids/surface_move.h"
+#include "geometry/solids/surface_point.h"
+#include "geometry/solids/triangle_solid.h"
 #include "support/surfaces.h"
 
 namespace supple {

@@ -10,6 +10,7 @@
 
 #include "geometry/shapes/shape.h"
 #include "geometry/skins/skin.h"
+#include "geometry/solids/triangle_solid.h"
 #include "support/surfaces.h"
 
 namespace supple {

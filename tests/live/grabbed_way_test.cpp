@@ -1,6 +1,7 @@
 // Tests the way of a handle that follows a pointer: it is never further from it than the tolerance, and has few keys.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 

@@ -8,6 +8,9 @@
 #include <numbers>
 
 #include "geometry/files/surface_file.h"
+#include "geometry/files/vertex_motion.h"
+#include "geometry/shapes/solid_motion.h"
+#include "geometry/skins/skin.h"
 #include "scene/building/collision_set.h"
 #include "sim/measures/energies.h"
 #include "support/bodies.h"

@@ -1,6 +1,7 @@
 // Tests what a replay holds of the live session that wrote it.
 #include <gtest/gtest.h>
 
+#include "scene/config/config.h"
 #include "scene/replay/played_session.h"
 #include "support/played_world.h"
 

@@ -13,6 +13,7 @@
 #include "support/played_world.h"
 #include "support/scene_text.h"
 #include "support/text_file.h"
+#include "world/restitution.h"
 
 namespace supple {
 namespace restitution_test {

@@ -6,6 +6,7 @@
 
 #include "geometry/meshes/cloth.h"
 #include "geometry/tetrahedra/tetrahedralize.h"
+#include "geometry/triangles/surface_thickness.h"
 #include "sim/air/air_forces.h"
 #include "sim/air/wind_field.h"
 #include "sim/model/joined_model.h"

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "geometry/meshes/cloth.h"
+#include "sim/elements/element_kernels.h"
 #include "sim/elements/triangle_stiffness.h"
 #include "sim/model/bending.h"
 #include "sim/solver/begin_step.h"

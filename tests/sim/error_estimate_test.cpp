@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "baselines/reference.h"
+#include "geometry/triangles/surface_thickness.h"
 #include "support/contact_scene.h"
 
 namespace supple {

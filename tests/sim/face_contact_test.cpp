@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 
 #include "geometry/meshes/cloth.h"
+#include "geometry/triangles/surface_thickness.h"
 #include "support/contact_scene.h"
 
 namespace supple {

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 
 #include "geometry/tetrahedra/tetrahedralize.h"
+#include "geometry/triangles/surface_thickness.h"
 #include "sim/elements/element_flow.h"
 #include "sim/measures/energies.h"
 #include "sim/measures/fields.h"

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "geometry/triangles/surface_thickness.h"
 #include "sim/coarse/second_level.h"
 #include "sim/coarse/turning.h"
 #include "sim/contact/find_contacts.h"

@@ -11,6 +11,7 @@
 #include <xsimd/xsimd.hpp>
 
 #include "base/variants.h"
+#include "sim/elements/element_kernels.h"
 #include "sim/elements/tetrahedron.h"
 #include "support/bodies.h"
 #include "support/deformations.h"

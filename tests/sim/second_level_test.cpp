@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "baselines/reference.h"
+#include "geometry/triangles/surface_thickness.h"
 #include "sim/measures/measures.h"
 #include "sim/solver/first_iterate.h"
 #include "sim/solver/lbfgs.h"

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "geometry/tetrahedra/tetrahedralize.h"
+#include "geometry/triangles/surface_thickness.h"
 #include "support/bodies.h"
 
 namespace supple {

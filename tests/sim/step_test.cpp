@@ -10,6 +10,7 @@
 
 #include "baselines/reference.h"
 #include "geometry/tetrahedra/tetrahedralize.h"
+#include "geometry/triangles/surface_thickness.h"
 #include "support/allocation_counter.h"
 #include "support/bodies.h"
 #include "support/contact_scene.h"

@@ -13,6 +13,7 @@
 #include "film/plan/shipped_files.h"
 #include "geometry/files/mesh_file.h"
 #include "geometry/tetrahedra/tetrahedralize.h"
+#include "geometry/triangles/surface_thickness.h"
 
 using namespace supple;
 

@@ -8,6 +8,7 @@
 
 #include "app/solvers.h"
 #include "base/timing.h"
+#include "base/user_cache.h"
 #include "film/plan/shipped_files.h"
 #include "world/world.h"
 

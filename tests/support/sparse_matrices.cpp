@@ -1,5 +1,6 @@
 #include "support/sparse_matrices.h"
 
+#include <algorithm>
 #include <numeric>
 #include <random>
 #include <utility>

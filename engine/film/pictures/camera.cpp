@@ -6,6 +6,10 @@
 
 #include "base/motion_hull.h"
 #include "render/view.h"
+#include "scene/definition/body_def.h"
+#include "scene/definition/camera_def.h"
+#include "scene/definition/collider_def.h"
+#include "scene/definition/scene_def.h"
 
 namespace supple {
 namespace {

@@ -1,10 +1,15 @@
 // Finds where the camera of a film stands at a time.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "render/draw_list.h"
-#include "scene/definition/scene_def.h"
 
 namespace supple {
+
+struct CameraDef;
+struct SceneDef;
 
 // Returns the box that a camera frames where nothing is known of the motion [m]: bodies and colliders at the start, and
 // the ground below those bodies that will fall on it.

@@ -10,6 +10,7 @@
 #include "geometry/skins/simplify.h"
 #include "geometry/skins/skin_stretch.h"
 #include "render/view.h"
+#include "sim/elements/tetrahedron.h"
 
 namespace supple {
 

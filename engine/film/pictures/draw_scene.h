@@ -10,6 +10,9 @@
 
 namespace supple {
 
+struct LookDef;
+struct SceneDef;
+
 // Makes the skin of each collider; it is empty where nothing of the collider is drawn.
 std::vector<Skin> collider_skins(const std::vector<SceneCollider>& colliders, const std::vector<Body>& bodies);
 Bounds bounds_at_rest(const std::vector<Body>& bodies);

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "scene/definition/scene_def.h"
+
 namespace supple {
 namespace {
 

@@ -9,6 +9,8 @@
 
 namespace supple {
 
+struct SceneDef;
+
 class DrawnSupports {
  public:
   // Adds the meshes to the stage, after all that it has. The bodies must outlive this object.

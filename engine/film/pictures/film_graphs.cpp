@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "film/pictures/surface_field.h"
+#include "scene/definition/scene_def.h"
+#include "scene/definition/text_def.h"
 
 namespace supple {
 namespace {

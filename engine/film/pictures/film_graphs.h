@@ -6,9 +6,11 @@
 
 #include "output/run/profile.h"
 #include "render/draw_list.h"
-#include "scene/definition/scene_def.h"
 
 namespace supple {
+
+struct SceneDef;
+struct TextDef;
 
 // Holds what the graphs show of a frame.
 struct GraphPoint {

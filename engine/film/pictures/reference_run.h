@@ -11,6 +11,8 @@
 
 namespace supple {
 
+struct SceneDef;
+
 class ReferenceRun {
  public:
   // Opens the files of motion of a run. scene: of the pictures; bodies: of that scene. Throws InputError when the

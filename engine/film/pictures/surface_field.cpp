@@ -10,6 +10,7 @@
 #include "geometry/meshes/cloth.h"
 #include "render/color_map.h"
 #include "scene/building/body.h"
+#include "scene/definition/scene_def.h"
 #include "sim/measures/fields.h"
 
 namespace supple {

@@ -15,9 +15,12 @@
 #include "render/draw_list.h"
 #include "scene/building/collision_set.h"
 #include "scene/building/drawn_body.h"
+#include "scene/definition/field_def.h"
 #include "sim/measures/pose_elements.h"
 
 namespace supple {
+
+struct SceneDef;
 
 // Describes the bodies at the end of a frame, and at the end of the frame before.
 struct FramePose {

@@ -4,6 +4,8 @@
 
 #include "base/error.h"
 #include "output/files/exr_file.h"
+#include "scene/definition/look_def.h"
+#include "scene/definition/scene_def.h"
 
 namespace supple {
 

@@ -2,9 +2,10 @@
 #pragma once
 
 #include "output/video/video.h"
-#include "scene/definition/scene_def.h"
 
 namespace supple {
+
+struct SceneDef;
 
 // Returns how the film of a scene is encoded: with coverage where its pictures have it. Throws InputError where the
 // format that is asked for holds none.

@@ -12,6 +12,8 @@
 
 namespace supple {
 
+struct State;
+
 // Holds the measured errors of a step.
 struct MeasuredErrors {
   // The error of equation 12; nothing where the start's objective is above its minimum by round-off alone.

@@ -6,6 +6,10 @@
 #include <cmath>
 #include <utility>
 
+#include "scene/definition/body_def.h"
+#include "scene/definition/output_def.h"
+#include "scene/definition/scene_def.h"
+
 namespace supple {
 namespace {
 

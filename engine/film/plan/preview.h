@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "scene/definition/scene_def.h"
-
 namespace supple {
+
+struct OutputDef;
+struct SceneDef;
 
 // Returns settings that replace those of the scene. share: roughly the share of its vertices that a solid keeps; 1
 // leaves the meshes as they are.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "render/font.h"
-#include "scene/definition/scene_def.h"
+#include "scene/definition/text_def.h"
 #include "scene/reading/scene_source.h"
 
 namespace supple {

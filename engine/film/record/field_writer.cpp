@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/floats.h"
+#include "scene/definition/scene_def.h"
 #include "sim/measures/fields.h"
 
 namespace supple {

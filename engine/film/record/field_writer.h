@@ -9,6 +9,8 @@
 
 namespace supple {
 
+struct SceneDef;
+
 class FieldWriter {
  public:
   // Creates the folder; throws RunError when that fails. All that is passed must outlive the writer.

@@ -19,6 +19,7 @@
 #include "output/motion/point_cache.h"
 #include "output/motion/pose_table.h"
 #include "output/run/json_difference.h"
+#include "scene/definition/scene_def.h"
 
 namespace supple {
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/solids/triangle_solid.h"
+
 namespace supple {
 namespace {
 

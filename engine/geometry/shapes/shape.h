@@ -15,9 +15,11 @@
 #include "base/names.h"
 #include "geometry/files/source_file.h"
 #include "geometry/meshes/pose.h"
-#include "geometry/solids/triangle_solid.h"
+#include "geometry/solids/surface_point.h"
 
 namespace supple {
+
+class TriangleSolid;
 
 struct Sphere {
   double radius;

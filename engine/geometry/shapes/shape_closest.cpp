@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "geometry/shapes/shape.h"
+#include "geometry/solids/triangle_solid.h"
 
 namespace supple {
 namespace {

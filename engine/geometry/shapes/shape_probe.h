@@ -6,6 +6,7 @@
 
 #include "geometry/shapes/shape.h"
 #include "geometry/solids/surface_move.h"
+#include "geometry/solids/triangle_solid.h"
 
 namespace supple {
 

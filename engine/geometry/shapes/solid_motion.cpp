@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "geometry/files/surface_file.h"
+#include "geometry/solids/triangle_solid.h"
 
 namespace supple {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <array>
 
-#include "base/names.h"
 #include "base/texture.h"
 #include "geometry/meshes/mesh.h"
 #include "geometry/shapes/shape.h"
@@ -12,14 +11,6 @@
 namespace supple {
 
 constexpr int max_paint_layers = 8;
-
-// Names what is printed on a body, in squares of one size, so that its strain can be seen.
-enum class Pattern { none, grid, checks };
-template <>
-struct Names<Pattern> {
-  static constexpr std::array table = {Name{Pattern::none, "none"}, Name{Pattern::grid, "grid"},
-                                       Name{Pattern::checks, "checks"}};
-};
 
 // Describes where a vertex lies on the flat cloth: along its two axes, and from its open border [m].
 using FlatPlace = std::array<float, 3>;

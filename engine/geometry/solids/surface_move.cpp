@@ -1,10 +1,12 @@
 #include "geometry/solids/surface_move.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "base/error.h"
+#include "geometry/solids/triangle_solid.h"
 
 namespace supple {
 namespace {

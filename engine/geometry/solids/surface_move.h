@@ -6,9 +6,11 @@
 #include <Eigen/Geometry>
 #include <memory>
 
-#include "geometry/solids/triangle_solid.h"
+#include "base/types.h"
 
 namespace supple {
+
+class TriangleSolid;
 
 class SurfaceMove {
  public:

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/solids/triangle_solid.h"
+#include "geometry/triangles/triangle_tree.h"
 
 namespace supple {
 namespace {

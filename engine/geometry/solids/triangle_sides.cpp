@@ -8,6 +8,7 @@
 #include "base/threads.h"
 #include "geometry/solids/triangle_solid.h"
 #include "geometry/triangles/triangle_edges.h"
+#include "geometry/triangles/triangle_tree.h"
 
 namespace supple {
 namespace {

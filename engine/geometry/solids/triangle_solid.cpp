@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "geometry/triangles/surface_thickness.h"
 #include "geometry/triangles/triangle_edges.h"
+#include "geometry/triangles/triangle_tree.h"
 
 namespace supple {
 namespace {
@@ -86,6 +87,7 @@ TriangleSolid::Leaf TriangleSolid::leaf_of(std::span<const std::int32_t> triangl
 }
 
 void TriangleSolid::build_tree() {
+  static_assert(width == TriangleTree::leaf_size);
   const TriangleTree tree = triangle_tree(surface_, TreeCut::smallest_boxes);
   nodes_.reserve(tree.order.size() / 8 + 1);
   dipoles_.reserve(tree.order.size() / 8 + 1);

@@ -14,16 +14,11 @@
 #include <vector>
 
 #include "geometry/meshes/mesh.h"
-#include "geometry/triangles/triangle_tree.h"
+#include "geometry/solids/surface_point.h"
 
 namespace supple {
 
-// Describes the point of a solid's surface that is closest to a query point.
-struct SurfacePoint {
-  Vec3 point;       // the surface's closest point [m]
-  Vec3 normal;      // of unit length, from inside to outside
-  double distance;  // from the query point, negative inside [m]
-};
+struct TriangleTree;
 
 // Keeps what queries about places near each other have found, for one caller. It saves work and changes no answer: the
 // same place has the same answer, whatever was asked before.
@@ -105,8 +100,7 @@ class TriangleSolid {
  private:
   // The binary tree's nodes are packed so that each has four children, and each leaf up to four triangles, one in each
   // vector lane.
-  static constexpr int width = 4;
-  static_assert(width == TriangleTree::leaf_size);
+  static constexpr int width = 4;  // as TriangleTree::leaf_size
   // The compiler's vectors: on a machine with shorter registers, it takes several, and the bits are the same.
   using Lanes = double __attribute__((vector_size(width * sizeof(double))));
   struct Lanes3 {

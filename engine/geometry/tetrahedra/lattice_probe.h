@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/shapes/shape.h"
+#include "geometry/solids/triangle_solid.h"
 
 namespace supple {
 

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "geometry/skins/mesh_bytes.h"
 #include "geometry/solids/surface_pieces.h"
+#include "geometry/solids/triangle_solid.h"
 #include "geometry/tetrahedra/tetrahedralize.h"
 #include "geometry/triangles/surface_thickness.h"
 

@@ -7,9 +7,10 @@
 
 #include "geometry/meshes/mesh.h"
 #include "geometry/shapes/shape.h"
-#include "geometry/triangles/surface_thickness.h"
 
 namespace supple {
+
+struct ThicknessSample;  // geometry/triangles/surface_thickness.h
 
 // Who hears of a mesh that is made in several attempts, and judges it.
 struct MeshingListener {

@@ -13,6 +13,7 @@
 #include "scene/building/unplaced_body.h"
 #include "scene/building/weaving.h"
 #include "scene/definition/rotation.h"
+#include "scene/definition/scene_def.h"
 #include "scene/reading/body_pieces.h"
 #include "sim/air/closed_surface.h"
 
@@ -234,6 +235,8 @@ void update_body(Body& body, const SceneDef& scene, const BodyDef& def) {
   }
   if (!problems.empty()) throw InputError(std::move(problems));
 }
+
+std::vector<Body> assemble(const SceneDef& scene) { return assemble(scene, SlowWork{}); }
 
 std::vector<Body> assemble(const SceneDef& scene, const SlowWork& work) {
   std::vector<Body> bodies;

@@ -2,15 +2,23 @@
 // is drawn of them is made in drawn_body.h.
 #pragma once
 
-#include "base/slow_work.h"
+#include <string>
+#include <vector>
+
+#include "base/error.h"
 #include "scene/building/body.h"
 #include "sim/model/state.h"
 
 namespace supple {
 
+struct SceneDef;
+struct SlowWork;  // base/slow_work.h
+
 // Makes all bodies of a scene. Throws InputError with the problems of all bodies at once: meshes that cannot be read,
 // empty selections, regions that the mesh does not have.
-std::vector<Body> assemble(const SceneDef& scene, const SlowWork& work = {});
+std::vector<Body> assemble(const SceneDef& scene);
+// Does the same, keeps meshes from run to run, and tells what takes long.
+std::vector<Body> assemble(const SceneDef& scene, const SlowWork& work);
 
 // Updates the values that may change while a body moves (live_keys.h) to those of the scene's present definition.
 // Throws InputError.

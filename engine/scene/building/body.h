@@ -2,19 +2,30 @@
 // assemble.h places it and gives it its substance. Not here: what is drawn in the place of its mesh (drawn_body.h).
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "geometry/files/source_file.h"
 #include "geometry/meshes/cloth.h"
+#include "geometry/meshes/mesh.h"
 #include "geometry/meshes/pose.h"
-#include "geometry/skins/surface_colors.h"
+#include "geometry/shapes/shape.h"
+#include "scene/definition/body_def.h"
 #include "scene/definition/keyed_motion.h"
-#include "scene/definition/scene_def.h"
 #include "sim/model/bounces.h"
 #include "sim/model/flow.h"
 #include "sim/model/model.h"
 #include "sim/model/solver_memory.h"
 
 namespace supple {
+
+struct SurfaceColors;  // geometry/skins/surface_colors.h
+struct SurfaceParts;   // geometry/files/colored_surface.h
 
 // Holds where a body of an earlier run was at the end of a frame, for a film that goes on from there.
 struct EarlierState {
@@ -34,7 +45,7 @@ struct EarlierState {
   Bounces bounces;                     // none where there are other bodies or colliders now
 };
 
-// Represents a body that is ready to be simulated and drawn, between what a file says of it (BodyDef, scene_def.h) and
+// Represents a body that is ready to be simulated and drawn, between what a file says of it (BodyDef, body_def.h) and
 // what a step needs (Model, which build_model makes of `description`, and State). MovingBody (world/) moves it.
 struct Body {
   // Names a collider that the body starts in, and tells how deep the body is in it [m].

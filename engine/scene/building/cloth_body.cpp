@@ -7,6 +7,7 @@
 #include "geometry/files/mesh_file.h"
 #include "geometry/files/surface_file.h"
 #include "geometry/skins/file_corners.h"
+#include "geometry/skins/surface_colors.h"
 #include "geometry/triangles/remesh.h"
 #include "geometry/triangles/sewn_border.h"
 #include "geometry/triangles/welded_surface.h"

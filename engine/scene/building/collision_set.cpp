@@ -1,9 +1,14 @@
 #include "scene/building/collision_set.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "geometry/shapes/solid_motion.h"
+#include "geometry/skins/skin.h"
+#include "geometry/solids/triangle_solid.h"
 #include "scene/definition/rotation.h"
+#include "scene/definition/scene_def.h"
 
 namespace supple {
 namespace {

@@ -1,12 +1,21 @@
 // Defines colliders that are ready for the solver and for the film.
 #pragma once
 
+#include <memory>
+#include <vector>
+
+#include <Eigen/Geometry>
+
 #include "geometry/meshes/pose.h"
-#include "geometry/skins/skin.h"
+#include "geometry/shapes/shape.h"
+#include "scene/definition/collider_def.h"
 #include "scene/definition/keyed_motion.h"
 #include "sim/model/inputs.h"
 
 namespace supple {
+
+struct SceneDef;
+struct Skin;  // geometry/skins/skin.h
 
 struct SceneCollider {
   ColliderDef def;  // of one that deforms, its shape is that of the film's start

@@ -1,6 +1,7 @@
 // Makes the drawn surfaces of bodies. They are made apart from the bodies, so that a run without images does not pay.
 #pragma once
 
+#include "base/slow_work.h"
 #include "geometry/skins/embedding.h"
 #include "geometry/skins/skin.h"
 #include "geometry/skins/skin_limit.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "scene/building/collision_set.h"
+#include "scene/definition/scene_def.h"
 #include "sim/contact/usual_depth.h"
 #include "sim/contact/way_out.h"
 #include "sim/measures/measures.h"

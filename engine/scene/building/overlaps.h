@@ -7,6 +7,8 @@
 
 namespace supple {
 
+struct SceneDef;
+
 constexpr double tolerated_overlap = 1e-4;  // depth at the start that does not count, over the (smaller) body's size
 
 // Sets Body::overlaps, and Body::start_move where the scene wants the body moved and a small move is enough. Adds a

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/text.h"
+#include "geometry/skins/surface_colors.h"
 #include "geometry/triangles/triangle_soup.h"
 
 namespace supple {

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/text.h"
+#include "scene/definition/scene_def.h"
 #include "sim/materials/material.h"
 
 namespace supple {

@@ -9,6 +9,8 @@
 
 namespace supple {
 
+struct SceneDef;
+
 // Computes how fast stiffness-proportional damping takes the spin from a body that nothing holds [1/s]. A turn by a
 // small angle a moves an element of volume V as if it were strained by sqrt(2) a, so that the damping of docs/method.md
 // takes beta k V a^2 / h from a step, beside the inertia's I a^2 / (2 h^2): the rate is 2 beta k V / I, whatever h is.

@@ -6,6 +6,7 @@
 #include "geometry/tetrahedra/tetrahedralize.h"
 #include "scene/building/cloth_body.h"
 #include "scene/building/skin_overhang.h"
+#include "scene/definition/scene_def.h"
 #include "scene/reading/body_pieces.h"
 #include "scene/reading/shape_reader.h"
 

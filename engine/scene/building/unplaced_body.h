@@ -10,6 +10,8 @@
 
 namespace supple {
 
+struct SceneDef;
+
 // Reads or makes each mesh once, also when several bodies share it. Meshes that take long to make are kept from run to
 // run.
 class UnplacedBodies {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/meshes/cloth.h"
+#include "geometry/shapes/solid_motion.h"
 #include "scene/building/body_depths.h"
 #include "scene/building/body_passings.h"
 #include "scene/building/cloth_cut.h"
@@ -13,7 +14,10 @@
 #include "scene/building/overlaps.h"
 #include "scene/building/solver_warnings.h"
 #include "scene/building/thin_bodies.h"
+#include "scene/definition/field_def.h"
 #include "scene/definition/meeting.h"
+#include "scene/definition/scene_def.h"
+#include "sim/elements/tetrahedron.h"
 #include "sim/measures/measures.h"
 
 namespace supple {

@@ -9,6 +9,8 @@
 
 namespace supple {
 
+struct SceneDef;
+
 // Computes k h^2 / (rho L^2), with the stiffness of the body or its fibres: the square of the number of times that a
 // wave crosses the body in one step. When it is far above 1, ten iterations leave a visible error.
 double crossing_number(const Body& body);

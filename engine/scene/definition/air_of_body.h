@@ -1,7 +1,10 @@
 // Says what the air of a scene has to do with a body, by the definitions of both. Not here: forces (sim/air/).
 #pragma once
 
+#include <optional>
+
 #include "scene/definition/scene_def.h"
+#include "sim/model/air_inputs.h"
 
 namespace supple {
 

@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/definition/body_def.h"
+#include "scene/definition/collider_def.h"
+#include "scene/definition/scene_def.h"
+
 namespace supple {
 namespace {
 

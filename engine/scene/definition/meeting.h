@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <string>
 
-#include "scene/definition/scene_def.h"
-
 namespace supple {
+
+struct BodyDef;
+struct ColliderDef;
+struct SceneDef;
 
 // Tells whether two bodies that are not the same one meet.
 bool meet(const BodyDef& a, const BodyDef& b);

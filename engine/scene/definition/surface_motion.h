@@ -4,9 +4,9 @@
 #include <memory>
 #include <optional>
 
-#include "geometry/shapes/solid_motion.h"
-
 namespace supple {
+
+class SolidMotion;  // geometry/shapes/solid_motion.h
 
 // Describes when a collider has the frames of the motion that deforms it.
 struct SurfaceMotionDef {

@@ -5,7 +5,7 @@
 #include "geometry/skins/surface_colors.h"
 #include "geometry/solids/surface_pieces.h"
 #include "scene/config/config.h"
-#include "scene/definition/scene_def.h"
+#include "scene/definition/body_def.h"
 
 namespace supple {
 

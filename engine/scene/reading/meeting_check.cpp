@@ -4,8 +4,12 @@
 #include <set>
 #include <utility>
 
+#include "base/error.h"
 #include "base/text.h"
+#include "scene/config/config.h"
+#include "scene/definition/body_def.h"
 #include "scene/definition/meeting.h"
+#include "scene/definition/scene_def.h"
 
 namespace supple {
 namespace {

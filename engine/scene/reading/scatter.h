@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scene/config/config.h"
-#include "scene/definition/scene_def.h"
+#include "scene/definition/body_def.h"
 
 namespace supple {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "scene/config/config.h"
-#include "scene/definition/scene_def.h"
+#include "scene/definition/selection.h"
 
 namespace supple {
 

@@ -5,6 +5,7 @@
 
 #include "base/hash.h"
 #include "geometry/files/surface_file.h"
+#include "geometry/solids/triangle_solid.h"
 #include "scene/definition/rotation.h"
 #include "scene/reading/known_surfaces.h"
 #include "scene/reading/table_readers.h"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/definition/scene_def.h"
+#include "scene/definition/text_def.h"
 
 namespace supple {
 

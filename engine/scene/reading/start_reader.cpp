@@ -5,6 +5,7 @@
 #include "base/names.h"
 #include "base/text.h"
 #include "scene/definition/rotation.h"
+#include "scene/definition/scene_def.h"
 #include "scene/reading/table_readers.h"
 
 namespace supple {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "scene/config/config.h"
-#include "scene/definition/scene_def.h"
 #include "scene/reading/scene_source.h"
 
 namespace supple {

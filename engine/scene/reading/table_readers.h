@@ -2,10 +2,20 @@
 // tables' Config. Not here: tables of shapes (shape_reader.h).
 #pragma once
 
+#include "base/finish.h"
+#include "base/frame_rate.h"
 #include "scene/config/config.h"
-#include "scene/definition/scene_def.h"
+#include "scene/definition/body_def.h"
+#include "scene/definition/camera_def.h"
+#include "scene/definition/collider_def.h"
+#include "scene/definition/field_def.h"
+#include "scene/definition/look_def.h"
+#include "scene/definition/text_def.h"
+#include "sim/model/air_inputs.h"
 
 namespace supple {
+
+struct EarlierFrame;
 
 // Reads the table of a body: what it is made of, where it starts, and what holds it. defaults: the defaults of the
 // body's solver, from the scene's table.

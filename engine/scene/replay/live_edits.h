@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "scene/definition/scene_def.h"
+#include "base/error.h"
+#include "scene/config/config_value.h"
+#include "scene/definition/keyed_motion.h"
 #include "scene/replay/live_keys.h"
 
 namespace supple {

@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "scene/config/config.h"
+#include "scene/config/config_value.h"
 
 namespace supple {
+
+class Config;
 
 // Tells what must be recomputed when a value changes. For most values that is nothing.
 struct ChangeCost {

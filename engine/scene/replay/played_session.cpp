@@ -4,8 +4,11 @@
 
 #include <charconv>
 #include <map>
+#include <variant>
 
 #include "base/hash.h"
+#include "scene/config/config.h"
+#include "scene/config/config_value.h"
 
 namespace supple {
 namespace {

@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "scene/config/config.h"
 #include "sim/model/budget_cuts.h"
 
 namespace supple {
+
+class Config;
+class ConfigTable;
 
 // Tells where a budget of time ended a step of a body, or that it did not.
 struct PlayedCut {

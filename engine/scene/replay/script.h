@@ -2,6 +2,13 @@
 // frame depends on the frame's number alone, so that a film can be resumed at any frame.
 #pragma once
 
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
 #include "scene/definition/scene_def.h"
 #include "scene/reading/scene_source.h"
 #include "scene/replay/live_edits.h"

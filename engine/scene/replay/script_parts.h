@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "scene/config/config.h"
 #include "scene/replay/script.h"
 
 namespace supple {

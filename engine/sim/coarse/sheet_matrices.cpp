@@ -4,6 +4,7 @@
 
 #include "sim/coarse/cross_matrix.h"
 #include "sim/coarse/sheet_stiffness.h"
+#include "sim/elements/triangle.h"
 
 namespace supple {
 namespace {

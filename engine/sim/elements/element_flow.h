@@ -8,24 +8,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "sim/elements/tetrahedron.h"
+#include "sim/materials/flow_rules.h"
 
 namespace supple {
-
-// Describes von Mises' plasticity with linear hardening.
-struct Plasticity {
-  double yield = 0;                                        // stress at which flow begins [Pa]
-  double hardening = 0;                                    // what a plastic strain of 1 adds to it [Pa]
-  double limit = std::numeric_limits<double>::infinity();  // the plastic strain that ends the flow
-};
-
-// Describes a standard linear solid: a share of the stiffness is that of a Maxwell arm, whose stress relaxes.
-struct Creep {
-  double share = 0;  // of the stiffness, above 0 and below 1
-  double time = 0;   // in which the arm's stress falls to 1/e where nothing moves [s]
-};
 
 // An element whose least elastic stretch is below this one, or that is inverted, does not flow: logarithms say little
 // there, and the elastic energy has to unfold it first.

@@ -7,23 +7,10 @@
 
 #include "base/types.h"
 #include "geometry/meshes/mesh.h"
+#include "sim/elements/cloth_elements.h"
 #include "sim/elements/element.h"
 
 namespace supple {
-
-struct Spring {
-  std::int32_t from, to;  // vertices of the mesh, in its own numbering
-  double length;          // the rest length [m]
-  double stiffness;       // [N/m]
-};
-
-// Describes a triangle of cloth as it lies in the flat pattern, where the first direction is that of the warp.
-struct FlatTriangle {
-  std::array<std::int32_t, 3> corner;  // vertices of the mesh, in its own numbering
-  double edges[4];                     // from corner 0 to corners 1 and 2, as columns of a matrix, row by row [m]
-
-  double area() const { return 0.5 * (edges[0] * edges[3] - edges[1] * edges[2]); }  // above 0 [m^2]
-};
 
 struct ElementRecord {
   ElementKind kind;

@@ -8,6 +8,8 @@
 #include <map>
 #include <optional>
 
+#include "sim/elements/triangle.h"
+
 namespace supple {
 namespace {
 

@@ -1,6 +1,9 @@
 // Visits a model's elements one by one, taken out of their SIMD blocks: for code whose speed does not matter.
 #pragma once
 
+#include "sim/elements/element.h"
+#include "sim/elements/element_kernels.h"
+#include "sim/elements/element_records.h"
 #include "sim/model/model.h"
 
 namespace supple {

@@ -9,8 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/elements/element_flow.h"
-
 namespace supple {
 
 // Holds what has flowed in a body. Lists are by tetrahedron of the input; they stay empty where a body has no such

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/trace.h"
+#include "sim/elements/element_flow.h"
 #include "sim/model/element_view.h"
 
 namespace supple {

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/error.h"
+#include "sim/elements/element_kernels.h"
 #include "sim/model/bending.h"
 #include "sim/model/model_values.h"
 

@@ -6,20 +6,30 @@
 // vertex.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "base/names.h"
+#include "base/aligned.h"
+#include "base/types.h"
 #include "geometry/meshes/mesh.h"
 #include "geometry/meshes/vertex_frames.h"
-#include "sim/elements/element_kernels.h"
-#include "sim/elements/element_records.h"
+#include "sim/elements/cloth_elements.h"
+#include "sim/materials/fibre.h"
+#include "sim/materials/flow_rules.h"
 #include "sim/materials/material.h"
-#include "sim/model/flow.h"
+#include "sim/materials/membrane.h"
 #include "sim/model/rest_curvature.h"
 #include "sim/model/system.h"
+#include "sim/model/time_scheme.h"
 
 namespace supple {
+
+enum class ElementKind;  // sim/elements/element.h
+struct ElementChunk;     // sim/elements/element_kernels.h
+struct ElementRecord;    // sim/elements/element_records.h
+struct SystemTerm;
 
 // Describes some vertices that follow a motion given from outside.
 struct Handle {
@@ -30,23 +40,6 @@ struct Handle {
   double stiffness = 0;  // of the spring from each vertex to its target [N/m]; 0: hard, the rows are eliminated
   bool holds = true;     // false: the springs have been let go and do not pull
 };
-
-enum class Integrator { backward_euler, implicit_midpoint };
-template <>
-struct Names<Integrator> {
-  static constexpr std::array table = {Name{Integrator::backward_euler, "backward-euler"},
-                                       Name{Integrator::implicit_midpoint, "implicit-midpoint"}};
-};
-
-// Holds the coefficients of the objective that a step minimises: w/(2 h^2) |x - y|^2_M + e E(theta x + (1 - theta) q),
-// with y = q + h v + f h^2 M^-1 f_ext. Backward Euler is equation 3; implicit midpoint evaluates forces halfway
-// (Hairer, Lubich, Wanner 2006, "Geometric numerical integration", section II.1).
-struct TimeScheme {
-  double inertia, energy, theta, force;  // w, e, theta, f
-};
-constexpr TimeScheme scheme_of(Integrator integrator) {
-  return integrator == Integrator::backward_euler ? TimeScheme{1, 1, 1, 1} : TimeScheme{2, 2, 0.5, 0.5};
-}
 
 // Describes a body, so that a model can be built from it.
 struct BodyDescription {

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "sim/elements/element_kernels.h"
 #include "sim/model/bending.h"
 
 namespace supple {

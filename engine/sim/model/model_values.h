@@ -3,6 +3,7 @@
 // while the body moves.
 #pragma once
 
+#include "sim/elements/element_records.h"
 #include "sim/model/model.h"
 
 namespace supple {

@@ -6,6 +6,9 @@
 #include "sim/contact/contact_direction.h"
 #include "sim/linear/linear_kernels.h"
 #include "sim/model/vertex_chunks.h"
+#include "sim/solver/iterate.h"
+#include "sim/solver/open_workspace.h"
+#include "sim/solver/step_clock.h"
 
 namespace supple {
 namespace {

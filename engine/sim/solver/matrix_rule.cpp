@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "sim/contact/contact_direction.h"
+#include "sim/elements/element.h"
 
 namespace supple {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "sim/elements/element.h"
 #include "sim/solver/energy_gain.h"
 #include "sim/solver/error_estimate.h"
 #include "sim/solver/iterations.h"

@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "sim/elements/element_kernels.h"
 #include "sim/model/bending.h"
 #include "sim/model/vertex_chunks.h"
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sim/elements/element_kernels.h"
 #include "sim/model/vertex_chunks.h"
 #include "sim/solver/objective.h"
 

@@ -3,10 +3,11 @@
 // search, contacts and report.
 #pragma once
 
-#include "sim/model/inputs.h"
-#include "sim/solver/open_workspace.h"
-
 namespace supple {
+
+struct Model;
+struct OpenWorkspace;
+struct StepInputs;
 
 class SearchRule {
  public:

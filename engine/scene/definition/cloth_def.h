@@ -1,0 +1,50 @@
+// Defines a cloth as a scene describes it. Not here: the fabrics that have names (fabrics.h).
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "base/error.h"
+#include "base/names.h"
+#include "base/types.h"
+#include "sim/materials/membrane.h"
+
+namespace supple {
+
+// Describes what a cloth is made of where it is no net of springs.
+struct FabricDef {
+  Fabric fabric;
+  std::optional<double> usual_density;  // of a preset [kg/m^2]
+};
+
+// Says in which shape each triangle of a surface is at rest.
+enum class ClothCut {
+  surface,  // as it lies in the file
+  texture,  // as it lies flat in the texture, whose coordinates are those of the pieces when they were cut
+};
+template <>
+struct Names<ClothCut> {
+  static constexpr std::array table = {Name{ClothCut::surface, "surface"}, Name{ClothCut::texture, "texture"}};
+};
+
+// Describes a cloth: a grid, the triangles of a mesh file, or those of a surface. It is made of a fabric, or of
+// springs.
+struct ClothDef {
+  std::filesystem::path mesh, surface;             // both empty: a grid
+  Eigen::Vector2d extent = Eigen::Vector2d(1, 1);  // of the grid [m]
+  Eigen::Vector2i cells = Eigen::Vector2i(40, 40);
+  std::optional<double> edge;  // wanted mean length of edges; the triangles stay as they are [m]
+  Vec3 grain = Vec3(0, 1, 0);  // direction of the warp, in the frame of the file; a triangle has it in its plane
+  ClothCut cut = ClothCut::surface;
+  std::optional<double> cut_scale;          // of one unit of the texture; nothing: as much as keeps the area [m]
+  FilePlace cut_place;                      // in the file, for messages once the surface is known
+  std::optional<double> sew;                // of vertices on the border that become one, the distance at most [m]
+  std::optional<FabricDef> fabric;          // nothing: it is made of springs
+  bool curved = false;                      // a fabric bends from the shape that the file has; else it is flat at rest
+  double stretch = 0, shear = 0, bend = 0;  // stiffness of a spring [N/m]
+};
+
+}  // namespace supple

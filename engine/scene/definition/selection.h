@@ -1,0 +1,42 @@
+// Defines how a scene chooses vertices of a body.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/names.h"
+#include "base/types.h"
+
+namespace supple {
+
+// Selects vertices of a body by a box, ball, half space or region, by their numbers, as those nearest to points, or by
+// what the file of a surface says of them: the name of a group or material, or a colour. Coordinates are relative to
+// the rest bounding box (0 to 1 along each axis).
+struct Selection {
+  enum class Kind { region, box, sphere, plane, vertices, nearest, group, color } kind = Kind::box;
+  std::string region;
+  std::vector<int> vertices;                          // numbers, counted from 1
+  Vec3 lower = Vec3(0, 0, 0), upper = Vec3(1, 1, 1);  // box
+  Vec3 center = Vec3(0, 0, 0);                        // sphere; a point of the plane
+  double radius = 0;                                  // sphere; relative to the longest side
+  Vec3 normal = Vec3(0, 1, 0);                        // plane: picks the side that it points to
+  std::vector<Vec3> points;                           // nearest
+  std::string group;                                  // a name in the file
+  Vec3 color = Vec3(0, 0, 0);                         // [sRGB]
+  double tolerance = 0.1;                             // of each channel of the colour
+  bool border = false;                                // of these, only those on the open border of a cloth
+  FilePlace place;                                    // in the file, for messages once the mesh is known
+};
+
+template <>
+struct Names<Selection::Kind> {
+  using Kind = Selection::Kind;
+  static constexpr std::array table = {Name{Kind::region, "region"},     Name{Kind::box, "box"},
+                                       Name{Kind::sphere, "sphere"},     Name{Kind::plane, "plane"},
+                                       Name{Kind::vertices, "vertices"}, Name{Kind::nearest, "nearest"},
+                                       Name{Kind::group, "group"},       Name{Kind::color, "color"}};
+};
+
+}  // namespace supple
