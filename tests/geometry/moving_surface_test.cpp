@@ -113,6 +113,27 @@ TEST(MovingSurface, FindsThePlaceAndTheSideThatBruteForceFindsAtBothTimes) {
   }
 }
 
+TEST(MovingSurface, AnyTrianglesDistanceIsABoundThatChangesNoPlace) {
+  Numbers numbers(7);
+  const TriMesh mesh = test::torus_surface(1, 0.4, 25, 11);
+  const Positions start = shaken(mesh.points, 0.02, numbers), end = shaken(2 * start, 0.03, numbers);
+  const Motion motion(mesh, start, end);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 p = numbers.in_cube(2.6);
+    const MovingSurface::Place place = *motion.surface.closest_at_end(p, infinity);
+    EXPECT_NEAR(motion.surface.distance_at_end(place.triangle, p), std::abs(place.distance), 1e-12);
+    for (const std::int32_t t : {place.triangle, std::int32_t(i % mesh.triangles.rows())}) {
+      const double bound = motion.surface.distance_at_end(t, p);
+      EXPECT_GE(bound, std::abs(place.distance) - 1e-12);
+      const auto bounded = motion.surface.closest_at_end(p, (1 + 1e-9) * bound);
+      ASSERT_TRUE(bounded.has_value());
+      EXPECT_EQ(bounded->triangle, place.triangle);
+      EXPECT_EQ(bounded->weights, place.weights);
+      EXPECT_EQ(bounded->distance, place.distance);
+    }
+  }
+}
+
 TEST(MovingSurface, TheNormalIsTheGradientOfTheDistance) {
   Numbers numbers(2);
   const Motion motion = dented_ball(numbers, Vec3(0.5, 0, 0));

@@ -209,6 +209,10 @@ Vec3 MovingSurface::normal_at_start(std::int32_t vertex) const {
 }
 Vec3 MovingSurface::normal_at_end(std::int32_t vertex) const { return normalized_or_zero(vertex_normal(end_, vertex)); }
 
+double MovingSurface::distance_at_end(std::int32_t t, const Vec3& p) const {
+  return foot_in_triangle({corner(end_, t, 0) - p, corner(end_, t, 1) - p, corner(end_, t, 2) - p}).offset.norm();
+}
+
 std::optional<MovingSurface::Place> MovingSurface::closest(const Pose& pose, const Vec3& p, double most,
                                                            const Takes* takes) const {
   struct Waiting {

@@ -74,6 +74,9 @@ class MovingSurface {
     return closest_among(end_, triangles, p, most, takes);
   }
 
+  // Returns how far one triangle is from a point at the end [m].
+  double distance_at_end(std::int32_t triangle, const Vec3& p) const;
+
   // Returns the pseudonormal of a vertex, of unit length; zero where no triangle there has an area.
   Vec3 normal_at_start(std::int32_t vertex) const;
   Vec3 normal_at_end(std::int32_t vertex) const;

@@ -6,11 +6,14 @@
 namespace supple {
 
 SheetPair::SheetPair(const Model& model, const StepInputs& inputs, std::size_t meeting, const Positions& q,
-                     const Positions& y, const Positions& x, const Work& work)
+                     const Positions& y, const Positions& x, Work& work)
     : TouchedSurface(model, inputs, inputs.meetings[meeting], q, y, x, work),
       points_(work.surfaces[meeting_.points].points),
       sharp_(work.only_sharp[meeting] != 0 ? &work.surfaces[meeting_.points].sharp : nullptr),
-      layer_(surface_.layer) {}
+      beside_(work.beside_sheets[meeting]),
+      layer_(surface_.layer) {
+  beside_.resize(points_.size());
+}
 
 bool SheetPair::is_looked_at(std::size_t index) const { return sharp_ == nullptr || (*sharp_)[index] != 0; }
 
@@ -23,19 +26,41 @@ double SheetPair::side_of(const Place& place, const Vec3& p, const Positions& x)
   return above >= 0 ? 1 : -1;
 }
 
+// Finds where the point is when the step begins, unless that is known. It is the same at all iterates, and found once
+// for all distances up to the one that was asked for.
+void SheetPair::look_at_start(const Vec3& a, double most, Work::BesideSheet& known) const {
+  constexpr double ahead = 2;  // so many times as far is looked, because later iterates may ask further
+  if (std::isfinite(known.distance) && known.asked >= 0) return;
+  if (known.asked >= most) return;
+  known.asked = ahead * most;
+  known.distance = infinity;
+  const std::optional<Place> place = surface_.moving->closest_at_start(a, known.asked);
+  if (!place) return;
+  known.distance = std::abs(place->distance);
+  known.side = side_of(*place, a, q_);
+  known.above = normal_of(place->triangle, q_).dot(a - place->point);
+}
+
+// The triangle that was closest at the iterate before is a bound for the distance, which saves most of the search and
+// changes no answer.
 void SheetPair::find(std::size_t index, std::vector<Contact>& list) const {
+  constexpr double beyond_roundoff = 1 + 1e-9;
   if (!is_looked_at(index)) return;
   const std::int32_t v = points_[index];
   const Vec3 a = q_.row(v).transpose(), b = x_.row(v).transpose();
   const double layer = std::max(layer_, model_.overhang_at(v));
   const double way = (b - a - surface_.carried).norm(), reach = reach_at(v, way) + layer;
-  if (!surface_.moving->is_near(a, b, surface_.carried, reach)) return;
+  Work::BesideSheet& known = beside_[index];
+  const double bound = known.last < 0 ? infinity : beyond_roundoff * surface_.moving->distance_at_end(known.last, b);
+  if (bound > reach && !surface_.moving->is_near(a, b, surface_.carried, reach)) return;
   const double moved = way + 2 * surface_.own_move;
-  const std::optional<Place> before = surface_.moving->closest_at_start(a, reach + moved);
+  look_at_start(a, reach + moved, known);
+  const bool began_near = known.distance <= reach + moved;
   const std::optional<Entry> crossing = surface_.moving->first_crossing(a, b, surface_.carried);
-  std::optional<Place> place = surface_.moving->closest_at_end(b, crossing ? reach + moved : reach);
+  std::optional<Place> place = surface_.moving->closest_at_end(b, std::min(crossing ? reach + moved : reach, bound));
   if (!place) return;
-  double side = before ? side_of(*before, a, q_) : 0;
+  known.last = place->triangle;
+  double side = began_near ? known.side : 0;
   if (crossing) {
     // The crossing's normal is the triangle's, or the opposite one where the point came from behind.
     const Vec3 then = normal_of(crossing->triangle, q_) + normal_of(crossing->triangle, x_);
@@ -47,8 +72,8 @@ void SheetPair::find(std::size_t index, std::vector<Contact>& list) const {
   if (place->normal.isZero(0)) return;
   place->distance = place->normal.dot(b - place->point) - layer;
   if (place->distance >= reach) return;
-  const double field = before && !crossing ? side * normal_of(before->triangle, q_).dot(a - before->point) - layer : 0;
-  add(v, *place, before ? field : reach, list, layer);
+  const double field = began_near && !crossing ? side * known.above - layer : 0;
+  add(v, *place, began_near ? field : reach, list, layer);
 }
 
 double SheetPair::share_to_impact(std::size_t index, double least) const {

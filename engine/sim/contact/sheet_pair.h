@@ -12,7 +12,7 @@ class SheetPair : public TouchedSurface {
  public:
   // meeting: its number in the inputs.
   SheetPair(const Model& model, const StepInputs& inputs, std::size_t meeting, const Positions& q, const Positions& y,
-            const Positions& x, const Work& work);
+            const Positions& x, Work& work);
 
   std::size_t points() const { return points_.size(); }
 
@@ -28,10 +28,12 @@ class SheetPair : public TouchedSurface {
 
   double side_of(const Place& place, const Vec3& p, const Positions& x) const;
   bool is_looked_at(std::size_t index) const;
+  void look_at_start(const Vec3& a, double most, Work::BesideSheet& known) const;
 
   const std::vector<std::int32_t>& points_;
-  const std::vector<char>* sharp_;  // by point: whether it is looked at; null: all are
-  double layer_;                    // [m]
+  const std::vector<char>* sharp_;          // by point: whether it is looked at; null: all are
+  std::vector<Work::BesideSheet>& beside_;  // by point
+  double layer_;                            // [m]
 };
 
 }  // namespace supple

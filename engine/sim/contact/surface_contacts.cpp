@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "sim/contact/common_way.h"
-#include "sim/contact/contact_order.h"
 #include "sim/contact/own_points.h"
 #include "sim/contact/own_sheet_points.h"
 #include "sim/contact/sheet_edges.h"
@@ -74,6 +74,7 @@ void begin_surfaces(const Model& model, const StepInputs& inputs, const Position
   }
   work.only_sharp = only_sharp_points(model, inputs, work);
   work.beginnings.resize(inputs.meetings.size());
+  work.beside_sheets.resize(inputs.meetings.size());
   work.common_ways.assign(inputs.meetings.size(), {});
   work.own_points.resize(model.parts.size());
   for (std::size_t m = 0; m < inputs.meetings.size(); ++m) {
@@ -82,24 +83,53 @@ void begin_surfaces(const Model& model, const StepInputs& inputs, const Position
       begin_own_points(model, inputs, meeting, q, y, work);
     } else {
       work.beginnings[m].clear();
+      work.beside_sheets[m].clear();
     }
   }
 }
 
 namespace {
 
-// Adds what search(points, list) finds of each point in turn, on all threads; results do not depend on their number.
+// Lists what a search finds of each point in turn, on all threads; results do not depend on their number. The lists are
+// those from `first` on; returns the number of all lists then.
 template <class Search>
-void search_points(const Search& search, Threads* threads, Work& work, std::vector<Contact>& found) {
+std::size_t search_points(const Search& search, Threads* threads, std::size_t first, Work& work) {
   const int chunks = static_cast<int>((search.points() + points_a_chunk - 1) / points_a_chunk);
-  if (std::ssize(work.by_chunk) < chunks) work.by_chunk.resize(chunks);
+  if (work.by_chunk.size() < first + std::size_t(chunks)) work.by_chunk.resize(first + std::size_t(chunks));
   run_chunks(threads, chunks, long(search.points()) * 20, [&](int chunk) {
-    work.by_chunk[chunk].clear();
+    std::vector<Contact>& list = work.by_chunk[first + std::size_t(chunk)];
+    list.clear();
     const std::size_t end = std::min(search.points(), std::size_t(chunk + 1) * points_a_chunk);
-    for (std::size_t i = std::size_t(chunk) * points_a_chunk; i < end; ++i) search.find(i, work.by_chunk[chunk]);
+    for (std::size_t i = std::size_t(chunk) * points_a_chunk; i < end; ++i) search.find(i, list);
   });
-  for (int chunk = 0; chunk < chunks; ++chunk)
-    found.insert(found.end(), work.by_chunk[chunk].begin(), work.by_chunk[chunk].end());
+  return first + std::size_t(chunks);
+}
+
+// Orders contacts by a number that each has, from 0 on; those with the same number stay in their order.
+template <class Number>
+void order_by(const Number& number, const std::vector<const Contact*>& from, std::vector<const Contact*>& to,
+              std::vector<std::size_t>& first_of) {
+  first_of.clear();
+  for (const Contact* contact : from) {
+    const auto key = std::size_t(number(*contact)) + 1;
+    if (first_of.size() <= key) first_of.resize(key + 1);
+    ++first_of[key];
+  }
+  std::partial_sum(first_of.begin(), first_of.end(), first_of.begin());
+  to.resize(from.size());
+  for (const Contact* contact : from) to[first_of[std::size_t(number(*contact))]++] = contact;
+}
+
+// Adds the contacts of the first lists in their order (contact_order.h). There are some ten thousand of them where
+// cloth lies on cloth, so that pointers are ordered, and each contact is copied once.
+void add_in_order(std::size_t lists, Work& work, std::vector<Contact>& found) {
+  work.unordered.clear();
+  for (std::size_t i = 0; i < lists; ++i)
+    for (const Contact& contact : work.by_chunk[i]) work.unordered.push_back(&contact);
+  if (work.unordered.empty()) return;
+  order_by([](const Contact& contact) { return contact.number; }, work.unordered, work.by_number, work.first_of);
+  order_by([](const Contact& contact) { return contact.other.part; }, work.by_number, work.unordered, work.first_of);
+  for (const Contact* contact : work.unordered) found.push_back(*contact);
 }
 
 // Returns the share of the ways at which the first of all points is deeper than it may be, or `least`.
@@ -135,11 +165,11 @@ void find_surface_contacts(const Model& model, const StepInputs& inputs, const P
   if (inputs.meetings.empty()) return;
   Work& work = all.parts();
   move_surfaces(model, q, x, work);
-  const std::size_t before = found.size();
+  std::size_t lists = 0;
   for (std::size_t m = 0; m < inputs.meetings.size(); ++m)
     visit_searches(model, inputs, m, q, y, x, work,
-                   [&](const auto& search) { search_points(search, threads, work, found); });
-  std::stable_sort(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(), comes_before);
+                   [&](const auto& search) { lists = search_points(search, threads, lists, work); });
+  add_in_order(lists, work, found);
 }
 
 void stop_at_surfaces(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& x,

@@ -40,6 +40,14 @@ struct SurfaceWork::Parts {
     std::optional<Place> place;  // that may hold it; nothing: outside, far from the surface
     double nearest = 0;          // how far away the surface is at all; 0 where it is far [m]
   };
+  // Holds what is known of a point that may meet a sheet: where it is when the step begins, and what was found last.
+  struct BesideSheet {
+    double asked = -1;       // how far away the sheet was looked for at the start; negative: it was not [m]
+    double distance = 0;     // of the sheet at the start; infinite where it is further away than that [m]
+    double side = 0;         // of the sheet on which the point is then: 1 in front, -1 behind, 0 beyond the border
+    double above = 0;        // how far it is in front of the sheet then, negative behind [m]
+    std::int32_t last = -1;  // the triangle that was closest at the latest iterate; -1: none was
+  };
   // Holds the way on which all points of a part leave another part, in which a good share of them begins the step deep.
   struct CommonWay {
     bool is_known = false;
@@ -54,13 +62,17 @@ struct SurfaceWork::Parts {
     OwnSheet::Pairs of_sheet;                  // the same of a sheet, which has no inside
   };
 
-  std::uint64_t structure = 0;                     // of the model that the surfaces belong to
-  std::vector<Surface> surfaces;                   // by part
-  std::vector<std::vector<Beginning>> beginnings;  // by meeting and point; empty where no point was asked
-  std::vector<CommonWay> common_ways;              // by meeting
-  std::vector<char> only_sharp;                    // by meeting: whether it is about its part's sharp points alone
-  std::vector<OwnPoints> own_points;               // by part
-  std::vector<std::vector<Contact>> by_chunk;      // scratch
+  std::uint64_t structure = 0;                          // of the model that the surfaces belong to
+  std::vector<Surface> surfaces;                        // by part
+  std::vector<std::vector<Beginning>> beginnings;       // by meeting and point; empty where no point was asked
+  std::vector<std::vector<BesideSheet>> beside_sheets;  // by meeting and point; empty where no point was asked
+  std::vector<CommonWay> common_ways;                   // by meeting
+  std::vector<char> only_sharp;                         // by meeting: whether it is about its part's sharp points alone
+  std::vector<OwnPoints> own_points;                    // by part
+  // Scratch memory of a search for contacts.
+  std::vector<std::vector<Contact>> by_chunk;
+  std::vector<const Contact*> unordered, by_number;
+  std::vector<std::size_t> first_of;
 };
 
 // Makes the surfaces of a model's parts, and readies those that something touches.
