@@ -29,10 +29,7 @@ void SheetEdges::visit_edges_near(const EdgeEnds& edge, double margin, const Vis
 
 void SheetEdges::find(std::size_t index, std::vector<Contact>& list) const {
   const EdgeEnds& edge = own_.edges[index];
-  double way = 0;
-  for (const std::int32_t v : edge)
-    way = std::max(way, ((x_.row(v) - q_.row(v)).transpose() - surface_.carried).norm());
-  const double reach = std::min(reach_at(edge[0], way), layer_) + layer_;
+  const double reach = std::min(reach_of_edge(edge), layer_) + layer_;
   visit_edges_near(edge, reach, [&](const EdgeEnds& other) { add_edges(edge, other, reach, list); });
 }
 

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/joined_model.h"
+
 namespace supple {
 
 SheetPair::SheetPair(const Model& model, const StepInputs& inputs, std::size_t meeting, const Positions& q,
                      const Positions& y, const Positions& x, Work& work)
     : TouchedSurface(model, inputs, inputs.meetings[meeting], q, y, x, work),
-      points_(work.surfaces[meeting_.points].points),
-      sharp_(work.only_sharp[meeting] != 0 ? &work.surfaces[meeting_.points].sharp : nullptr),
+      own_(work.surfaces[meeting_.points]),
+      points_(own_.points),
+      sharp_(work.only_sharp[meeting] != 0 ? &own_.sharp : nullptr),
       beside_(work.beside_sheets[meeting]),
       layer_(surface_.layer) {
   beside_.resize(points_.size());
@@ -26,9 +29,20 @@ double SheetPair::side_of(const Place& place, const Vec3& p, const Positions& x)
   return above >= 0 ? 1 : -1;
 }
 
+// Tells whether a place of the sheet is within the solid to which a point belongs, when the step begins: then the point
+// has come through the sheet. The line from the point to the place leads into the solid, and does not leave it again.
+bool SheetPair::is_within_own(std::int32_t v, const Vec3& a, const Place& before) const {
+  constexpr double inward = -0.3;  // cosine, of the line and the point's normal
+  const Part& own = model_.parts[meeting_.points];
+  if (!own.solid || own_.moving == nullptr) return false;
+  const Vec3 line = before.point - a;
+  if (own_.moving->normal_at_start(own_vertex(model_, own, v)).dot(line) >= inward * line.norm()) return false;
+  return !own_.moving->last_exit_at_start(a, before.point).has_value();
+}
+
 // Finds where the point is when the step begins, unless that is known. It is the same at all iterates, and found once
 // for all distances up to the one that was asked for.
-void SheetPair::look_at_start(const Vec3& a, double most, Work::BesideSheet& known) const {
+void SheetPair::look_at_start(std::int32_t v, const Vec3& a, double most, Work::BesideSheet& known) const {
   constexpr double ahead = 2;  // so many times as far is looked, because later iterates may ask further
   if (std::isfinite(known.distance) && known.asked >= 0) return;
   if (known.asked >= most) return;
@@ -37,7 +51,7 @@ void SheetPair::look_at_start(const Vec3& a, double most, Work::BesideSheet& kno
   const std::optional<Place> place = surface_.moving->closest_at_start(a, known.asked);
   if (!place) return;
   known.distance = std::abs(place->distance);
-  known.side = side_of(*place, a, q_);
+  known.side = is_within_own(v, a, *place) ? -side_of(*place, a, q_) : side_of(*place, a, q_);
   known.above = normal_of(place->triangle, q_).dot(a - place->point);
 }
 
@@ -54,7 +68,7 @@ void SheetPair::find(std::size_t index, std::vector<Contact>& list) const {
   const double bound = known.last < 0 ? infinity : beyond_roundoff * surface_.moving->distance_at_end(known.last, b);
   if (bound > reach && !surface_.moving->is_near(a, b, surface_.carried, reach)) return;
   const double moved = way + 2 * surface_.own_move;
-  look_at_start(a, reach + moved, known);
+  look_at_start(v, a, reach + moved, known);
   const bool began_near = known.distance <= reach + moved;
   const std::optional<Entry> crossing = surface_.moving->first_crossing(a, b, surface_.carried);
   std::optional<Place> place = surface_.moving->closest_at_end(b, std::min(crossing ? reach + moved : reach, bound));

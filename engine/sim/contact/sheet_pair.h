@@ -1,7 +1,8 @@
 // Finds the contacts of points of a part with another one that is a sheet, such as cloth: a surface without inside,
 // with a thin layer on both sides. The layer tells on which side a point is: contact presses a point into the layer,
 // but not through the sheet, so that a point is on the side on which a step finds it. On the way through a step, the
-// first crossing decides. A point that begins beyond the border of a sheet is on neither side.
+// first crossing decides. A point that begins beyond the border of a sheet is on neither side. A point of a solid that
+// has the sheet inside its own solid is on the wrong side, and goes back.
 #pragma once
 
 #include "sim/contact/touched_surface.h"
@@ -28,8 +29,10 @@ class SheetPair : public TouchedSurface {
 
   double side_of(const Place& place, const Vec3& p, const Positions& x) const;
   bool is_looked_at(std::size_t index) const;
-  void look_at_start(const Vec3& a, double most, Work::BesideSheet& known) const;
+  bool is_within_own(std::int32_t v, const Vec3& a, const Place& before) const;
+  void look_at_start(std::int32_t v, const Vec3& a, double most, Work::BesideSheet& known) const;
 
+  const Work::Surface& own_;
   const std::vector<std::int32_t>& points_;
   const std::vector<char>* sharp_;          // by point: whether it is looked at; null: all are
   std::vector<Work::BesideSheet>& beside_;  // by point

@@ -10,6 +10,7 @@
 #include "sim/contact/own_sheet_points.h"
 #include "sim/contact/sheet_edges.h"
 #include "sim/contact/sheet_pair.h"
+#include "sim/contact/solid_edges.h"
 #include "sim/contact/solid_pair.h"
 #include "sim/contact/surface_work.h"
 #include "sim/contact/touched_surface.h"
@@ -152,7 +153,9 @@ void visit_searches(const Model& model, const StepInputs& inputs, std::size_t me
   if (are_apart(model, inputs, of, work)) return;
   if (model.parts[of.surface].solid) {
     find_common_way(model, inputs, meeting, q, y, x, work);
-    return visit(SolidPair(model, inputs, meeting, q, y, x, work));
+    visit(SolidPair(model, inputs, meeting, q, y, x, work));
+    if (SolidEdges::are_asked(model, inputs, meeting)) visit(SolidEdges(model, inputs, meeting, q, y, x, work));
+    return;
   }
   visit(SheetPair(model, inputs, meeting, q, y, x, work));
   if (SheetEdges::are_asked(model, inputs, meeting)) visit(SheetEdges(model, inputs, meeting, q, y, x, work));

@@ -14,6 +14,8 @@ namespace {
 
 using Work = SurfaceWork::Parts;
 
+constexpr double least_cosine = 0.5;  // of the normals of two faces; below it, what is between them is sharp
+
 // Lists the triangles of a part, with its vertices numbered as in its own model.
 Triangles triangles_of(const Model& model, const Part& part) {
   std::vector<Eigen::Index> own;
@@ -57,17 +59,39 @@ Vec3 rest_normal(const Triangles& triangles, Eigen::Index t, const Positions& re
   return edge.cross(other).normalized();
 }
 
-// Lists the edges of a sheet.
-void list_edges(const Part& part, Work::Surface& surface) {
+// Returns the two triangles at an edge, first the one that runs from its lower vertex to the higher one; -1 where there
+// are not just these two. all: sorted_edges() of the triangles.
+std::array<std::int32_t, 2> faces_at(const std::vector<TriangleEdge>& all, const EdgeEnds& edge) {
+  const auto same = std::ranges::equal_range(all, std::pair(edge[0], edge[1]), {},
+                                             [](const TriangleEdge& of) { return std::pair(of.low, of.high); });
+  if (same.size() != 2 || same[0].upward == same[1].upward) return {-1, -1};
+  const bool is_first = same[0].upward;
+  return {same[is_first ? 0 : 1].triangle, same[is_first ? 1 : 0].triangle};
+}
+
+// Lists the edges of a surface, with their faces where it is that of a solid.
+void list_edges(const Model& model, const Part& part, Work::Surface& surface) {
   EdgesByTriangle all = edges_by_triangle(surface.triangles);
   for (const EdgeEnds& edge : all.edges)
     surface.edges.push_back({joined_vertex(part, edge[0]), joined_vertex(part, edge[1])});
   surface.edge_begin = std::move(all.begin);
+  if (!part.solid) return;
+  const Positions rest = rows_of(part, model.rest);
+  const std::vector<TriangleEdge> sorted = sorted_edges(surface.triangles);
+  for (const EdgeEnds& edge : all.edges) {
+    const std::array<std::int32_t, 2> faces = faces_at(sorted, edge);
+    surface.edge_faces.push_back(faces);
+    if (faces[0] < 0) continue;
+    const Vec3 one = rest_normal(surface.triangles, faces[0], rest),
+               other = rest_normal(surface.triangles, faces[1], rest),
+               along = (rest.row(edge[1]) - rest.row(edge[0])).transpose();
+    if (one.dot(other) < least_cosine && one.cross(other).dot(along) > 0)
+      surface.sharp_edges.push_back(std::int32_t(surface.edge_faces.size()) - 1);
+  }
 }
 
 // Finds the points at which the normals of two faces are far apart, and the mean length of edges.
 void describe_surface(const Model& model, const Part& part, Work::Surface& surface) {
-  constexpr double least_cosine = 0.5;
   const Positions rest = rows_of(part, model.rest);
   const Triangles& triangles = surface.triangles;
   std::vector<std::vector<Vec3>> normals(std::size_t(rest.rows()));
@@ -98,9 +122,8 @@ void make_surfaces(const Model& model, const StepInputs& inputs, Work& work) {
       surface.points = points_of(part, surface.triangles);
       describe_surface(model, part, surface);
       for (const std::int32_t v : surface.points) surface.overhang = std::max(surface.overhang, model.overhang_at(v));
-      if (part.solid) continue;
-      surface.layer = sheet_layer(surface.edge);
-      list_edges(part, surface);
+      list_edges(model, part, surface);
+      if (!part.solid) surface.layer = sheet_layer(surface.edge);
     }
   }
   work.structure = model.structure;

@@ -1,6 +1,7 @@
 // Holds what a step knows of the surfaces of a joined model's parts, for the searches of surface_contacts.h.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -23,9 +24,13 @@ struct SurfaceWork::Parts {
     double edge = 0;                   // the mean length of the surface's edges at rest [m]
     double layer = 0;                  // how far a sheet keeps others from it; 0 for a solid [m]
     double overhang = 0;               // the largest of its points' [m]
-    std::vector<EdgeEnds> edges;       // each edge of a sheet once, by vertices of the joined model; none of a solid
-    // Tells by triangle of a sheet where those of its edges begin that no earlier triangle has, and where all end.
+    std::vector<EdgeEnds> edges;       // each edge once, by vertices of the joined model
+    // Tells by triangle where those of its edges begin that no earlier triangle has, and where all end.
     std::vector<std::int32_t> edge_begin;
+    // Holds by edge of a solid the triangle that runs from its lower vertex to the higher one, and the other one; -1
+    // where there are not just these two.
+    std::vector<std::array<std::int32_t, 2>> edge_faces;
+    std::vector<std::int32_t> sharp_edges;  // of a solid: those at which faces look very differently at rest, ascending
     std::unique_ptr<MovingSurface> moving;  // null where nothing touches this part
     std::unique_ptr<OwnSurface> own;        // of a solid; null where it does not touch itself
     std::unique_ptr<OwnSheet> own_sheet;    // of a sheet; null where it does not touch itself
@@ -44,7 +49,7 @@ struct SurfaceWork::Parts {
   struct BesideSheet {
     double asked = -1;       // how far away the sheet was looked for at the start; negative: it was not [m]
     double distance = 0;     // of the sheet at the start; infinite where it is further away than that [m]
-    double side = 0;         // of the sheet on which the point is then: 1 in front, -1 behind, 0 beyond the border
+    double side = 0;         // of the sheet to which the point belongs then: 1 front, -1 back, 0 beyond the border
     double above = 0;        // how far it is in front of the sheet then, negative behind [m]
     std::int32_t last = -1;  // the triangle that was closest at the latest iterate; -1: none was
   };

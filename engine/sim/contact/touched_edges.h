@@ -1,5 +1,6 @@
-// Makes the contacts of an edge of a sheet with an edge of another one, or of the same one, at one iterate. Which edges
-// may touch is found elsewhere (sheet_edges.h, own_sheet_points.h).
+// Makes the contacts of an edge of a sheet with an edge of another one, or of the same one, at one iterate, and holds
+// what they share with contacts of edges with those of a solid. Which edges may touch is found elsewhere
+// (sheet_edges.h, own_sheet_points.h, solid_edges.h).
 #pragma once
 
 #include <vector>
@@ -14,17 +15,26 @@ class TouchedEdges : public TouchedSurface {
   // layer: how far apart the edges are kept [m].
   TouchedEdges(const Model& model, const StepInputs& inputs, const Meeting& meeting, const Positions& q,
                const Positions& y, const Positions& x, const Work& work, double layer)
-      : TouchedSurface(model, inputs, meeting, q, y, x, work), layer_(layer) {}
+      : TouchedSurface(model, inputs, meeting, q, y, x, work), layer_(layer), deepest_at_impact_(-0.5 * layer) {}
 
-  // Adds the contact of two edges, if there is one. reach: how far apart they need a plane [m]. Edges that pass through
-  // each other twice in a step are taken as if they did not.
+  // Returns how far from the surface an edge needs a plane [m].
+  double reach_of_edge(const EdgeEnds& edge) const;
+
+  // Adds the contact of two edges of sheets, if there is one. reach: how far apart they need a plane [m]. Edges that
+  // pass through each other twice in a step are taken as if they did not.
   void add_edges(const EdgeEnds& edge, const EdgeEnds& other, double reach, std::vector<Contact>& list) const;
 
-  // Returns the share of the way at which edges that pass through each other are as deep in the layer as they may be,
-  // or `least` where that is no later impact.
+  // Adds the contact of two edges with the plane through the closest place of the other one. end: both at the iterate;
+  // field: the distance above the layer where the step began [m].
+  void add_pair(const EdgeEnds& edge, const EdgeEnds& other, const TwoEdges& end, const Vec3& normal, double field,
+                std::vector<Contact>& list) const;
+
+  // Returns the share of the way at which edges that pass through each other are as deep as they may be, or `least`
+  // where that is no later impact.
   double share_to_impact(const EdgeEnds& edge, const EdgeEnds& other, double least) const;
 
-  double layer_;  // [m]
+  double layer_;              // [m]
+  double deepest_at_impact_;  // beyond the place where edges pass through each other; negative: before it [m]
 };
 
 }  // namespace supple

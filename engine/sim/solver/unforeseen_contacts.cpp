@@ -9,10 +9,23 @@
 namespace supple {
 namespace {
 
-// Returns the contact of the same point with the same collider; null: there is none.
-const Contact* find_same(const std::vector<Contact>& list, const Contact& contact) {
-  const auto at = std::lower_bound(list.begin(), list.end(), contact, comes_before);
-  return at != list.end() && !comes_before(contact, *at) ? &*at : nullptr;
+// Tells whether a contact is that of an edge with one of a solid: two vertices against two.
+bool is_at_ridge(const Model& model, const Contact& contact) {
+  const auto& weight = contact.stencil.weight;
+  return contact.stencil.count == 4 && !contact.other.is_collider() && model.parts[contact.other.part].solid &&
+         weight[0] * weight[1] * weight[2] * weight[3] > 0;
+}
+
+// Returns the contact of the same point with the same collider or part, or of the same edge with the same edge of a
+// solid; null: there is none. Edges have the number of a vertex, which may have a contact itself.
+const Contact* find_same(const Model& model, const std::vector<Contact>& list, const Contact& contact) {
+  const bool at_ridge = is_at_ridge(model, contact);
+  auto at = std::lower_bound(list.begin(), list.end(), contact, comes_before);
+  for (; at != list.end() && !comes_before(contact, *at); ++at) {
+    if (is_at_ridge(model, *at) != at_ridge) continue;
+    if (!at_ridge || at->stencil.vertex == contact.stencil.vertex) return &*at;
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -23,10 +36,11 @@ bool learn_contacts(const Model& model, const StepInputs& inputs, OpenWorkspace&
   find_contacts_of(model, inputs, w, at);
   std::vector<Contact> more;
   for (const Contact& contact : at.contacts) {
-    if (!contact.stencil.is_vertex() && find_same(before, contact) == nullptr) more.push_back(contact);
+    if (!contact.stencil.is_vertex() && find_same(model, before, contact) == nullptr) more.push_back(contact);
   }
   for (Contact ahead : w.trial.contacts) {
-    if (gap(ahead, at.x) < 0 || find_same(before, ahead) != nullptr || find_same(more, ahead) != nullptr) continue;
+    if (gap(ahead, at.x) < 0 || find_same(model, before, ahead) != nullptr || find_same(model, more, ahead) != nullptr)
+      continue;
     ahead.depth = ahead.friction = 0;
     more.insert(std::upper_bound(more.begin(), more.end(), ahead, comes_before), ahead);
   }
