@@ -132,7 +132,7 @@ TEST(TouchingEdges, KeepASoftBallOnItsSideOfACloth) {
     played.play(frame, frame + 1);
     crossed += crossings(played) > 0;
   }
-  EXPECT_LE(crossed, 2) << "frames; where only vertices touch, and those that come through stay there, 32";
+  EXPECT_LE(crossed, 1) << "frames; there are 32 where only vertices touch, and stay where they come through";
 }
 
 TEST(TouchingEdges, HaveTheSameBitsForAllThreadsAndGoOnFromAnyState) {
