@@ -4,30 +4,13 @@
 
 #include <algorithm>
 
-#include "baselines/make_rule.h"
 #include "geometry/triangles/edge_crossings.h"
-#include "scene/building/assemble.h"
-#include "support/scene_text.h"
-#include "world/world.h"
+#include "support/played_world.h"
 
 namespace supple {
 namespace touching_edges_test {
 
-struct Played {
-  explicit Played(const std::string& text, int count = 1)
-      : threads(count), world(test::scene_of(text), assemble(test::scene_of(text))) {
-    world.start({make_rule, settings_of}, &threads);
-  }
-  void play(int first, int end) {
-    for (int frame = first; frame < end; ++frame) ASSERT_TRUE(world.play(frame)) << frame;
-  }
-  Positions places(std::size_t body) const {
-    return in_input_order(world.body(body).model(), world.body(body).state().x);
-  }
-
-  Threads threads;
-  World world;
-};
+using Played = test::PlayedWorld;
 
 // Counts edges that pass through triangles of the other one of two bodies.
 std::int64_t crossings(const Played& played) {

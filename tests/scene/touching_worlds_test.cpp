@@ -11,23 +11,14 @@
 #include "sim/contact/own_sheet.h"
 #include "sim/contact/own_surface.h"
 #include "sim/model/element_view.h"
-#include "support/scene_text.h"
+#include "support/played_world.h"
 #include "world/world.h"
 
 namespace supple {
 namespace touching_worlds_test {
 
-struct Played {
-  explicit Played(const std::string& text, int count = 1)
-      : threads(count), world(test::scene_of(text), assemble(test::scene_of(text))) {
-    world.start({make_rule, settings_of}, &threads);
-  }
-  void play(int first, int end) {
-    for (int frame = first; frame < end; ++frame) ASSERT_TRUE(world.play(frame)) << frame;
-  }
-  Positions places(std::size_t body) const {
-    return in_input_order(world.body(body).model(), world.body(body).state().x);
-  }
+struct Played : test::PlayedWorld {
+  using PlayedWorld::PlayedWorld;
   // Returns the sums of m v and of m |v|^2 / 2 over all bodies.
   Vec3 momentum() const {
     Vec3 sum = Vec3::Zero();
@@ -40,9 +31,6 @@ struct Played {
     for (int v = 0; v < model.free; ++v) sum += model.mass[v] * world.body(body).state().v.row(v).transpose();
     return sum;
   }
-
-  Threads threads;
-  World world;
 };
 
 std::string cube(const std::string& name, double x, double speed, const std::string& keys = "") {

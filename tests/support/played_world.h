@@ -1,12 +1,17 @@
 // Makes worlds of scenes that are written in a test.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <cstddef>
 #include <string>
 #include <vector>
 
+#include "base/threads.h"
 #include "baselines/make_rule.h"
 #include "scene/building/assemble.h"
 #include "support/places.h"
+#include "support/scene_text.h"
 #include "world/world.h"
 
 namespace supple::test {
@@ -36,5 +41,23 @@ inline World world_of(const SceneSource& source, const std::vector<std::string>&
   world.start({make_rule, settings_of}, nullptr);
   return world;
 }
+
+// A scene's world with threads of its own. count: of the threads.
+struct PlayedWorld {
+  explicit PlayedWorld(const std::string& text, int count = 1)
+      : threads(count), world(scene_of(text), assemble(scene_of(text))) {
+    world.start({make_rule, settings_of}, &threads);
+  }
+  void play(int first, int end) {
+    for (int frame = first; frame < end; ++frame) ASSERT_TRUE(world.play(frame)) << frame;
+  }
+  // Returns the positions of a body in the order of its mesh, n x 3 [m].
+  Positions places(std::size_t body) const {
+    return in_input_order(world.body(body).model(), world.body(body).state().x);
+  }
+
+  Threads threads;
+  World world;
+};
 
 }  // namespace supple::test
