@@ -16,26 +16,16 @@ SheetEdges::SheetEdges(const Model& model, const StepInputs& inputs, std::size_t
                                   work.surfaces[inputs.meetings[meeting].surface].layer)),
       own_(work.surfaces[meeting_.points]) {}
 
-// An edge is in the boxes of all triangles that have it, so that one of them is enough.
-template <class Visit>
-void SheetEdges::visit_edges_near(const EdgeEnds& edge, double margin, const Visit& visit) const {
-  surface_.moving->visit_triangles_near({q_.row(edge[0]), q_.row(edge[1])}, {x_.row(edge[0]), x_.row(edge[1])},
-                                        surface_.carried, margin, [&](std::int32_t t) {
-                                          const auto first = surface_.edge_begin[std::size_t(t)],
-                                                     end = surface_.edge_begin[std::size_t(t) + 1];
-                                          for (auto e = first; e < end; ++e) visit(surface_.edges[std::size_t(e)]);
-                                        });
-}
-
 void SheetEdges::find(std::size_t index, std::vector<Contact>& list) const {
   const EdgeEnds& edge = own_.edges[index];
   const double reach = std::min(reach_of_edge(edge), layer_) + layer_;
-  visit_edges_near(edge, reach, [&](const EdgeEnds& other) { add_edges(edge, other, reach, list); });
+  visit_edges_near(edge, reach, [&](std::size_t other) { add_edges(edge, surface_.edges[other], reach, list); });
 }
 
 double SheetEdges::share_to_impact(std::size_t index, double least) const {
   const EdgeEnds& edge = own_.edges[index];
-  visit_edges_near(edge, 0, [&](const EdgeEnds& other) { least = TouchedEdges::share_to_impact(edge, other, least); });
+  visit_edges_near(
+      edge, 0, [&](std::size_t other) { least = TouchedEdges::share_to_impact(edge, surface_.edges[other], least); });
   return least;
 }
 

@@ -28,9 +28,6 @@ class SheetEdges : public TouchedEdges {
   double share_to_impact(std::size_t index, double least) const;
 
  private:
-  template <class Visit>
-  void visit_edges_near(const EdgeEnds& edge, double margin, const Visit& visit) const;
-
   const Work::Surface& own_;
 };
 

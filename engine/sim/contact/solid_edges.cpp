@@ -52,18 +52,13 @@ SolidEdges::SolidEdges(const Model& model, const StepInputs& inputs, std::size_t
   if (!of_sheet_) deepest_at_impact_ = usual_depth(size_);
 }
 
-// An edge is in the boxes of all triangles that have it, so that one of them is enough.
 template <class Visit>
 void SolidEdges::visit_ridges_near(const EdgeEnds& edge, double margin, const Visit& visit) const {
-  if (!of_sheet_ && surface_.sharp_edges.empty()) return;
-  surface_.moving->visit_triangles_near({q_.row(edge[0]), q_.row(edge[1])}, {x_.row(edge[0]), x_.row(edge[1])},
-                                        surface_.carried, margin, [&](std::int32_t t) {
-                                          const auto first = surface_.edge_begin[std::size_t(t)],
-                                                     end = surface_.edge_begin[std::size_t(t) + 1];
-                                          for (auto e = first; e < end; ++e)
-                                            if (of_sheet_ || std::ranges::binary_search(surface_.sharp_edges, e))
-                                              visit(std::size_t(e));
-                                        });
+  if (of_sheet_) return visit_edges_near(edge, margin, visit);
+  if (surface_.sharp_edges.empty()) return;
+  visit_edges_near(edge, margin, [&](std::size_t other) {
+    if (std::ranges::binary_search(surface_.sharp_edges, std::int32_t(other))) visit(other);
+  });
 }
 
 // Returns the unit vector along the shortest way between two edges that points out of the solid; nothing where the

@@ -20,6 +20,18 @@ class TouchedEdges : public TouchedSurface {
   // Returns how far from the surface an edge needs a plane [m].
   double reach_of_edge(const EdgeEnds& edge) const;
 
+  // Calls visit(number) for each edge of the surface that an edge may come nearer to than a margin [m]. An edge is in
+  // the boxes of all triangles that have it, so that one of them is enough.
+  template <class Visit>
+  void visit_edges_near(const EdgeEnds& edge, double margin, const Visit& visit) const {
+    const auto visit_of = [&](std::int32_t t) {
+      const auto first = surface_.edge_begin[std::size_t(t)], end = surface_.edge_begin[std::size_t(t) + 1];
+      for (auto e = first; e < end; ++e) visit(std::size_t(e));
+    };
+    surface_.moving->visit_triangles_near({q_.row(edge[0]), q_.row(edge[1])}, {x_.row(edge[0]), x_.row(edge[1])},
+                                          surface_.carried, margin, visit_of);
+  }
+
   // Adds the contact of two edges of sheets, if there is one. reach: how far apart they need a plane [m]. Edges that
   // pass through each other twice in a step are taken as if they did not.
   void add_edges(const EdgeEnds& edge, const EdgeEnds& other, double reach, std::vector<Contact>& list) const;

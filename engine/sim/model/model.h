@@ -178,8 +178,8 @@ struct Model : System {
   };
   SparseRows damping;  // (beta/h) L [N/m]
   SparseRows bending;  // Q of bending.h, without its diagonal [N/m]
-  // What stands for Q in the energy of cloth that is curved at rest, and in its forces; empty where there is none. A
-  // and Hessians have Q all the same.
+  // Takes the place of Q in the energy and the forces of cloth that is curved at rest; it is empty where no cloth is. A
+  // and the Hessians have Q all the same.
   RestCurvature curvature;
 
   bool flows() const { return plastic.has_value() || creep.has_value(); }
