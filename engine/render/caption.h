@@ -12,6 +12,7 @@
 
 namespace supple {
 
+// Holds a line of text as pixels, of a caption or of any other words.
 struct CaptionBitmap {
   int width = 0, height = 0;
   std::vector<std::uint8_t> coverage;  // rows from the top, 0 to 255

@@ -12,7 +12,10 @@
 namespace supple {
 namespace {
 
-constexpr double note_size = 0.8;  // of a note's letters, over those of the caption
+// The letters of captions are as high as the picture (height_for_letters) divided by the first of these numbers; where
+// there is little room they become smaller, down to the height divided by the second one.
+constexpr double heights_in_picture = 32, most_heights_in_picture = 60;
+constexpr double note_size = 0.8;  // the height of a note's letters, over that of the caption's
 
 bool same(const Camera& a, const Camera& b) { return a.eye == b.eye && a.target == b.target && a.fov_deg == b.fov_deg; }
 
@@ -147,14 +150,15 @@ const std::vector<Captions::Placed>& Captions::places(const Camera& camera, cons
   return placed_;
 }
 
-// Looks for places that meet the first demand that can be met, in letters as large as can be. Returns whether there
-// are.
+// Looks for places that meet the first demand that can be met, in letters as large as can be. Returns whether it has
+// found them.
 bool Captions::find_places(const Camera& camera, const LetterSizes& sizes, std::span<const Demand> demands) {
   const bool have_boards = std::ranges::any_of(bodies_, [](const Body& body) { return body.board.has_value(); });
   bool done = false;
   for (const Demand& demand : demands) {
     if (done || (demand.boards && !have_boards)) continue;
-    // Where they cannot all be near, they grow as long as that moves each of them by less than a line.
+    // Where captions cannot all be near their bodies, letters grow as long as that moves each caption by less than a
+    // line.
     std::optional<double> most;
     if (demand.reach == CaptionReach::anywhere && !demand.over_bodies) {
       most = try_size(camera, sizes.smallest, demand);
@@ -176,8 +180,8 @@ void Captions::lay_out(const Camera& camera) {
   stickers_.clear();
   if (font_.empty()) return;
   const int height = height_for_letters(width_, height_);
-  const int largest = std::max(9, static_cast<int>(std::lround(height / 32.0)));
-  const int smallest = std::max(8, static_cast<int>(std::lround(height / 60.0)));
+  const int largest = std::max(9, static_cast<int>(std::lround(height / heights_in_picture)));
+  const int smallest = std::max(8, static_cast<int>(std::lround(height / most_heights_in_picture)));
   const LetterSizes sizes = {largest, smallest, std::max(1, largest / 12)};
   // Small letters beside their body say more than large ones that could belong to another.
   constexpr std::array demands = {Demand{CaptionReach::near, true, false}, Demand{CaptionReach::near, false, false},

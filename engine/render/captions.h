@@ -1,10 +1,11 @@
 // Lays the captions of bodies over the finished picture: each below its body, and none over another or over a body that
 // stands where it stood at the start. The caption of a body on a collider of its own, called its board here, is read as
 // that of both and stands beside both: below them, or above them where the board leads the body down in the picture.
-// Where there is little room, all captions become smaller together. A camera that moves changes nothing of this layout
-// but where the bodies are: captions keep their distance from them and do not jump, and that of a body which the camera
-// follows stays where it is in the picture. Not here: the words (a mesh's label
-// is BodyDef::label, notes are from film/pictures/picture_words.h), and the search for free places (caption_layout.h).
+// Where there is little room, all captions become smaller together; captions.cpp begins with how large they are. They
+// are laid out for the first picture. Where the camera moves, each caption goes along with its body in the picture
+// and does not jump, and that of a body which the camera follows stays where it is in the picture. Not here: the words
+// (a mesh's label is BodyDef::label, notes are from film/pictures/picture_words.h), and the search for free places
+// (caption_layout.h).
 #pragma once
 
 #include <span>
@@ -54,7 +55,7 @@ class Captions {
     Eigen::Vector2d at;
     CaptionSide side;
   };
-  // Tells what a layout asks for.
+  // Tells what the places of a layout must be like; lay_out() tries several demands, one after the other.
   struct Demand {
     CaptionReach reach;
     bool boards;       // whether captions stand beside the boards of their bodies
@@ -84,11 +85,11 @@ class Captions {
   PixelRect subtitles_;
   std::vector<Body> bodies_;               // by mesh of the stage
   std::vector<Placed> placed_, laid_out_;  // in the picture in hand; in that of the camera of the layout
-  std::optional<Camera> first_camera_;     // of the layout, where the camera moves
-  std::vector<bool> over_body_;            // as placed_
-  std::vector<Sticker> stickers_;          // of the labels, as placed_
-  int em_ = 0;                             // that was chosen [pixels]
-  std::optional<Camera> camera_;           // for which they were laid out
+  std::optional<Camera> first_camera_;     // the camera of the layout where the camera moves; nothing where it does not
+  std::vector<bool> over_body_;            // in the order of placed_: whether the caption stands in front of a body
+  std::vector<Sticker> stickers_;          // of the labels, in the order of placed_
+  int em_ = 0;                             // the height of the letters that was chosen [pixels]
+  std::optional<Camera> camera_;           // the camera for which captions were laid out; nothing: they must be again
 };
 
 }  // namespace supple

@@ -1,5 +1,5 @@
-// A small picture with coverage (text, plates, bars) that is laid over a finished picture, without OpenGL. Not here:
-// what is written and where (captions.h, legend.h).
+// Draws a small picture with coverage (text, plates, bars) and lays it over a finished picture, without OpenGL. Not
+// here: what is written and where (captions.h, subtitles.h, legend.h, graphs.h).
 #pragma once
 
 #include <cstdint>

@@ -33,9 +33,9 @@ std::string subtitle_text(const TextDef& text, double time);
 // Returns all subtitles that pictures of the film may show, each once.
 std::vector<std::string> all_subtitles(const TextDef& text);
 
-// Warns of characters in the title, in captions and subtitles, at any time of the film, for which no
-// installed font has a glyph: the pictures show boxes in their place. font: of the words; empty where there is none,
-// and then there are no words.
+// Warns of characters in the title, in captions and in subtitles, at any time of the film, for which no installed font
+// has a glyph: the pictures show boxes in their place. font: the font of the words; where it is empty there are no
+// words, and there is no warning.
 std::optional<Problem> letters_warning(const Script& script, const Font& font);
 
 }  // namespace supple

@@ -62,9 +62,9 @@ struct SceneDef {
   }
   // Returns the time at which the film begins [s].
   double time_at_start() const { return fps.time_of(frames_before()); }
-  // Returns the time after the steps of a frame [s], which its picture shows: its caption, the contact sheet, the run's
-  // page, tables and files all tell it. A film begins with bodies that no picture shows; without `from`, frame 0 is at
-  // 1 / fps.
+  // Returns the time after the steps of a frame [s], which its picture shows: its headline, the contact sheet, the
+  // run's page, tables and files all tell it. A film begins with bodies that no picture shows; without `from`, frame 0
+  // is at 1 / fps.
   double time_after(int frame) const { return fps.time_of(frames_before() + frame + 1LL); }
   // Tells whether there is anything that a body may touch, besides itself. Runs keep contact forces where there is.
   bool may_touch() const { return !colliders.empty() || bodies.size() > 1; }

@@ -30,9 +30,9 @@ struct TextDef {
   bool notes() const { return method || milliseconds || iterations || error; }
   // These are small graphs over the film so far, in a corner.
   bool error_graph = false, time_graph = false;
-  // These stand at the lower edge, in order of their begin.
+  // These stand at the lower edge, in the order in which they begin.
   std::vector<Subtitle> subtitles;
-  std::optional<SourceFile> subtitle_file;  // from which some of them are
+  std::optional<SourceFile> subtitle_file;  // the file from which some of them were read; nothing: none were
 };
 
 }  // namespace supple
