@@ -1,8 +1,9 @@
-// Every material is isotropic: what has a direction is a Fibre (elements/tetrahedron.h), which scenes add to any
-// material. It has a name, needs, parameters(), density() and axial_stress(s). The last is f = a' + 2 b' + c' of
-// equation 10: the stress along the axis of a sample at F = diag(s, 1, 1), whose sides are held. Because a material
-// declares these itself, scene files, stiffness fits and kernels use a new one without further changes. For tests and
-// pages, docs/adding-a-material.md lists the places that must name it.
+// Defines what a material of solids says of itself: a name, needs, parameters(), density() and axial_stress(s). The
+// last is f = a' + 2 b' + c' of equation 10: the stress along the axis of a sample at F = diag(s, 1, 1), whose sides
+// are held. Because a material declares these itself, scene files, stiffness fits and kernels use a new one without
+// further changes. For tests and pages, docs/adding-a-material.md lists the places that must name it. Every material is
+// isotropic: what has a direction is a Fibre (fibre.h), which scenes add to any material. Not here: the materials of
+// cloth (membrane.h).
 //
 // A material may also have these members, each of which is used where it exists:
 //   static M from(const Lame&)          from Young's modulus and Poisson's ratio
