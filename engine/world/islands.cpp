@@ -161,6 +161,7 @@ void Islands::note_touches(const std::vector<std::size_t>& island, const Model& 
     if (contact.other.is_collider()) continue;
     const std::size_t point = island[joined.part_number(contact.number)], other = island[contact.other.part];
     const auto [a, b] = std::pair(std::min(point, other), std::max(point, other));
+    // A depth counts from the other surface, where n . u = 0, and not from the plane.
     const double above = gap(contact, x), inside = -(above + contact.offset);
     if (above >= 0 && inside <= 0) continue;
     BodyTouch& touch = by_pair.try_emplace({a, b}, BodyTouch{.a = a, .b = b}).first->second;

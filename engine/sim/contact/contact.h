@@ -27,11 +27,13 @@ struct OtherSide {
 struct Contact {
   ContactStencil stencil;
   OtherSide other;
-  Vec3 normal;              // away from the other side
-  double offset;            // the plane n . u = offset [m]
-  double stiffness;         // k_c [N/m]
-  double depth;             // of the point below the plane when found; 0: it was near, not touching [m]
-  std::int32_t number = 0;  // of the point in this step: a vertex, or above all vertices' numbers
+  Vec3 normal;       // away from the other side
+  double offset;     // the plane n . u = offset [m]
+  double stiffness;  // k_c [N/m]
+  double depth;      // of the point below the plane when found; 0: it was near, not touching [m]
+  // Names the point in this step: it is the vertex, or the first vertex of an edge that touches another edge. A point
+  // between vertices that touches a collider has a number above those of all vertices.
+  std::int32_t number = 0;
   // Friction is lagged; it opposes u - origin along the plane.
   double friction = 0;  // coefficient times normal force [N]
   // This is where u would be if the point had moved with the other side [m]. Colliders without friction leave it at 0.

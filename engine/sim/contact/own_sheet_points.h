@@ -15,6 +15,7 @@ class OwnSheetPoints : public TouchedEdges {
       : TouchedEdges(model, inputs, meeting, q, y, x, work, 0.5 * work.surfaces[meeting.surface].layer),
         pairs_(work.own_points[meeting.points].of_sheet) {}
 
+  // Returns how many pairs are asked about, of points and of edges.
   std::size_t points() const { return pairs_.size(); }
 
   // Adds the contact of a pair, if there is one.

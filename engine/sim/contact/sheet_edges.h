@@ -18,6 +18,7 @@ class SheetEdges : public TouchedEdges {
   SheetEdges(const Model& model, const StepInputs& inputs, std::size_t meeting, const Positions& q, const Positions& y,
              const Positions& x, const Work& work);
 
+  // Returns how many edges are asked about; all searches have this name (surface_contacts.cpp).
   std::size_t points() const { return own_.edges.size(); }
 
   // Adds the contacts of an edge.

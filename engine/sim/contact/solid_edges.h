@@ -23,6 +23,7 @@ class SolidEdges : public TouchedEdges {
   SolidEdges(const Model& model, const StepInputs& inputs, std::size_t meeting, const Positions& q, const Positions& y,
              const Positions& x, const Work& work);
 
+  // Returns how many edges are asked about; all searches have this name (surface_contacts.cpp).
   std::size_t points() const { return of_sheet_ ? own_.edges.size() : own_.sharp_edges.size(); }
 
   // Adds the contacts of an edge.

@@ -140,7 +140,12 @@ double first_share(const Search& search, double least) {
   return least;
 }
 
-// Calls visit(search) for each search that a meeting needs at an iterate. meeting: its number in the inputs.
+// Calls visit(search) for each search that a meeting needs at an iterate. meeting: its number in the inputs. A search
+// is a class with three functions, and a new kind of pair is a new search that is visited here:
+//   points()                       returns how many points, pairs or edges it asks about
+//   find(index, list)              adds the contacts of one of them to a list; threads share the indices
+//   share_to_impact(index, least)  returns the share of its way at which it is as deep as it may be; 1, or `least`,
+//                                  where that is not before `least`
 template <class Visit>
 void visit_searches(const Model& model, const StepInputs& inputs, std::size_t meeting, const Positions& q,
                     const Positions& y, const Positions& x, Work& work, const Visit& visit) {

@@ -1,6 +1,7 @@
 // Describes one iterate of a step in which points of a part meet a part's surface: what its triangles are like there,
-// and which contact a place of it makes with a point. What the searches of two parts
-// (surface_contacts.cpp, sheet_pair.h) and of one with itself (own_points.h) share.
+// and which contact a place of it makes with a point. All searches of surface_contacts.cpp derive from this class:
+// those of two parts (solid_pair.h, sheet_pair.h), those of a part with itself (own_points.h, own_sheet_points.h), and
+// those of edges (touched_edges.h).
 #pragma once
 
 #include <array>
@@ -57,7 +58,7 @@ class TouchedSurface {
   // step. field: the distance where the step began, negative inside [m]. layer: how far above the place the plane lies
   // [m]; distances count from there.
   void add(std::int32_t v, const Place& place, double field, std::vector<Contact>& list, double layer = 0) const;
-  // Adds that of a stencil with a normal. number: of the point.
+  // Adds the contact of a stencil, whose plane has this normal. number: Contact::number.
   void add(const ContactStencil& stencil, std::int32_t number, const Vec3& normal, double field,
            std::vector<Contact>& list, double layer) const;
 

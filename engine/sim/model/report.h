@@ -14,7 +14,7 @@ namespace supple {
 
 // Counts contacts and their changes.
 struct ContactCounts {
-  int touching = 0;  // points that touch a collider, counted by collider, at the end
+  int touching = 0;  // contacts in force at the end: a point counts for each collider and part that it touches
   int changes = 0;   // touching points that came or went, over all iterations
   int cycles = 0;    // iterations that came back to the touching points of the one before last
 };
@@ -50,7 +50,7 @@ struct StepReport {
   double evaluate_ms = 0;  // energies and gradients
   double solve_ms = 0;     // A d = r
   double lbfgs_ms = 0;     // recursions
-  double collide_ms = 0;   // finding contacts; 0 without colliders
+  double collide_ms = 0;   // finding contacts; 0 where there is nothing to touch
   double matrix_ms = 0;    // renewing the matrix of directions; 0 in most steps
   double other_ms = 0;     // the rest; the six add up to step_ms
   double start_ms = 0;     // until the first iterate was evaluated
@@ -69,7 +69,7 @@ struct StepReport {
   StopReason stop_reason = StopReason::iterations;
   BudgetCuts cuts;  // where a budget of time ended the iterations
   ContactCounts contacts;
-  Vec3 contact_force = Vec3(0, 0, 0);  // of all colliders on the body, at the end of the step [N]
+  Vec3 contact_force = Vec3(0, 0, 0);  // of all that touches the body, at the end of the step [N]
   std::vector<Vec3> collider_forces;   // force of each collider on the body; empty without colliders [N]
   bool failed = false;
   StepFailure failure;

@@ -1,8 +1,7 @@
 // Evaluates g(x) of equation 3, or of another integrator or with damping, at iterates: values, value differences
-// without cancellation, and gradients, in a fixed order of summation. Contacts are added as contact.h has
-// them, and air as sim/air/air_forces.h has it. Not
-// here: where to evaluate next (lbfgs.h for directions, line_search.h for points along them, iterations.h for the
-// loop).
+// without cancellation, and gradients, in a fixed order of summation. Contacts are added as contact.h has them, and air
+// as sim/air/air_forces.h has it. Not here: where to evaluate next (lbfgs.h for directions, line_search.h for points
+// along them, iterations.h for the loop).
 #pragma once
 
 #include "sim/solver/open_workspace.h"
