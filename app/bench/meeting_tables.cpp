@@ -26,15 +26,15 @@ std::string end_text(const Outcomes& outcomes) {
 }
 
 std::string figures_text(const Outcomes& outcomes) {
-  double deepest = 0, depth = 0, gained = 0, speed = 0, trials = 0;
+  double deepest = 0, deep_at_end = 0, gained = 0, speed = 0, trials = 0;
   for (const MeetingOutcome& one : outcomes) {
     deepest = std::max(deepest, one.deepest);
-    depth = std::max(depth, one.depth_at_end);
+    deep_at_end = std::max(deep_at_end, one.depth_at_end);
     gained = std::max(gained, one.gained);
     speed = std::max(speed, one.speed);
     trials += one.trials / double(outcomes.size());
   }
-  return fmt::format("{:.1e}; {:.1e}; {:.0e}; {:.0e}; {:.0f}", deepest, depth, gained, speed, trials);
+  return fmt::format("{:.1e}; {:.1e}; {:.0e}; {:.0e}; {:.0f}", deepest, deep_at_end, gained, speed, trials);
 }
 
 MeetingTables empty_tables() {
@@ -42,10 +42,8 @@ MeetingTables empty_tables() {
   tables.ends = {"stability-meeting", "What each case of bodies that meet ends as"};
   tables.ends.note =
       "An empty cell: all rules of the case are kept, and the run warns of nothing. In brackets: they are kept, and "
-      "the "
-      "run warns. Else: the first rule that is broken, and how many of those runs are silent, which means that they "
-      "warn "
-      "of nothing. docs/bench.md has the rules.";
+      "the run warns. Else: the first rule that is broken, and how many of those runs are silent, which means that "
+      "they warn of nothing. docs/bench.md has the rules.";
   tables.figures = {"stability-meeting-figures", "Depths, energy, speed and evaluations where bodies meet"};
   tables.figures.note =
       "Each cell: how deep bodies were in each other, at most and at the end, over the smaller one's size; energy from "

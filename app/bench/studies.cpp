@@ -85,8 +85,7 @@ ReportSection bench_sweeps(const BenchSetting& setting) {
   ReportSection section{"sweeps", "Where Newton overtakes: stiffness, Poisson's ratio, resolution"};
   section.text = fmt::format(
       "Twisting bar, Neo-Hookean, frame {}, our mesh; time to an error for ours and for Newton's method. An infinite "
-      "time "
-      "means not within 300 iterations of ours or 15 of Newton's.",
+      "time means not within 300 iterations of ours or 15 of Newton's.",
       sweep_frame);
   ReportTable table{"sweeps", "Time to an error"};
   table.columns = {"sweep",

@@ -94,8 +94,7 @@ RowOfBodies row_of_bodies(const BenchSetting& setting) {
       "degrees towards a wall. The time is the median of {} frames of one step, after {} in which the row settles. The "
       "exponents are the p of bodies^p, and of contacts^p, to which this row and those above it fit best, by least "
       "squares of logarithms; the contacts are those with bodies and with colliders. A cube in the middle of a long "
-      "row "
-      "has more contacts than one alone, which touches colliders only.",
+      "row has more contacts than one alone, which touches colliders only.",
       leaning_deg, timed_frames, settling_frames);
   table.columns = {"bodies",
                    "bodies of the largest island",

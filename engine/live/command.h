@@ -12,25 +12,25 @@
 namespace supple {
 
 enum class CommandKind {
-  set,        // a value, as a replay changes it
-  pause,      // the frames stop
-  run,        // they go on
-  step,       // one frame, then pause
-  speed,      // of the film against the clock
-  restart,    // the film begins again, without what was done
-  go,         // back to a frame, without what was done after it
-  grab,       // the vertices at a place of the picture
-  drag,       // them to another place
-  drop,       // them
-  release,    // a handle that was left holding
-  orbit,      // the camera, about its target
-  pan,        // camera and target, in the plane of the picture
-  zoom,       // the camera, towards its target
-  home,       // the scene's own camera
-  keep_view,  // the film of the replay has the page's camera
-  show,       // another look of the surfaces
-  keep_rate,  // steps end when their share of a frame's time is over
-  save,       // the replay of what was done
+  set,        // changes a value, as a replay does
+  pause,      // stops the frames
+  run,        // lets them continue
+  step,       // makes one frame, and then pauses
+  speed,      // sets the film's speed against the clock
+  restart,    // begins the film again, without what was done
+  go,         // goes back to a frame, without what was done after it
+  grab,       // takes hold of the vertices at a place of the picture
+  drag,       // moves what is grabbed to another place
+  drop,       // lets go of what is grabbed, or leaves its handle holding it
+  release,    // lets a handle go that was left holding
+  orbit,      // turns the camera about its target
+  pan,        // moves camera and target in the plane of the picture
+  zoom,       // moves the camera towards its target
+  home,       // returns to the scene's own camera
+  keep_view,  // gives the film of the replay the page's camera
+  show,       // gives the surfaces another look
+  keep_rate,  // lets steps end when their share of a frame's time is over
+  save,       // asks for the replay of what was done
 };
 template <>
 struct Names<CommandKind> {
@@ -46,7 +46,7 @@ struct Names<CommandKind> {
                                        Name{CommandKind::save, "save"}};
 };
 
-// Holds what is asked for, and of the other members those that this needs.
+// Holds what is asked for. Of the members after `kind`, only those that this kind of command needs have values.
 struct Command {
   CommandKind kind = CommandKind::pause;
   std::string path, value;  // of set: as --set takes them

@@ -19,17 +19,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::chrono::milliseconds between_looks{100};  // at requests that the program should end
+constexpr std::chrono::milliseconds between_looks{100};  // from one look for a request to end the program to the next
 constexpr int most_late = 3;                             // frames that the film may catch up after a slow one
-constexpr std::size_t frames_of_rate = 30;               // over which the rate is measured
-constexpr std::size_t frames_of_budget = 10;             // after which the budget follows what frames take
+constexpr std::size_t frames_of_rate = 30;               // the frames over which the rate is measured
+constexpr std::size_t frames_of_budget = 10;             // after so many the budget follows what frames take
 constexpr int frames_between_words = 10;
 constexpr double tolerance = 1.0 / 250;  // of a grab's way, over the picture's height: two pixels of 540
 constexpr const char* budget_path = "solver.budget_ms";
-constexpr double furthest = 0.3;  // that a grab moves in a frame, over the body's size
+constexpr double furthest = 0.3;  // the longest way of a grab in a frame, over the body's size
 
-// Returns what is wrong, as short as a page can show it. A value that only goes together with others is told to be one:
-// the list of what is wrong beside it is for the files of replays.
+// Returns what is wrong, as short as a page can show it. Where a value is wrong because of the values beside it, the
+// message says only that: which values these are helps only somebody who writes a replay's file.
 std::string message_of(const InputError& error) {
   std::string text;
   for (const Problem& problem : error.problems()) text += (text.empty() ? "" : "; ") + problem.message;
@@ -211,7 +211,7 @@ LiveSession::Json LiveSession::carry_out(const Command& command) {
     case CommandKind::pan:
     case CommandKind::zoom:
     case CommandKind::home:
-    case CommandKind::save: break;  // these do not come here (server.cpp)
+    case CommandKind::save: break;  // serve() saves, and the views do not come here (server.cpp)
   }
   tell_state();
   return Json::object();
@@ -329,7 +329,7 @@ std::vector<LiveGrab> LiveSession::holding() const {
   return grabs;
 }
 
-// Goes back to the film's first frames, without what was done after them.
+// Goes back to where the film had this many frames, without what was done after them.
 void LiveSession::go(int frames) {
   const int made = timeline_.frames();
   if (frames > made) throw InputError("frame", fmt::format("the film has {} so far", count_text(made, "frame")));

@@ -12,7 +12,7 @@
 namespace supple {
 namespace {
 
-// Two numbers whose multiples fill a square evenly (the generalised golden ratio, Roberts 2018).
+// The multiples of these two numbers fill a square evenly (the generalised golden ratio, Roberts 2018).
 constexpr double stride_x = 0.7548776662466927, stride_y = 0.5698402909980532;
 
 double fraction(double value) { return value - std::floor(value); }
@@ -164,7 +164,7 @@ int pictures_needed(const Stage& stage, const DrawList& list) {
 
 namespace {
 
-constexpr int light_steps = 1 << 16;  // of linear light; a level of sRGB is at least 19 of them wide
+constexpr int light_steps = 1 << 16;  // steps of linear light; a level of sRGB is at least 19 of them wide
 
 }  // namespace
 

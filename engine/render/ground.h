@@ -66,15 +66,15 @@ class Ground {
   GroundShown shown_;
   Vec3 lit_ = Vec3(0, 0, 1);  // centre x, z and radius of the stage in the frame in hand [m]
   GroundOcclusion occlusion_;
-  Tiles tiles_;       // that shadows may reach
-  Tiles open_tiles_;  // the others that have a body above them
+  Tiles tiles_;       // those that shadows may reach
+  Tiles open_tiles_;  // those of the others that have a body above them
   TileBuffer tile_buffer_;
   GLuint framebuffer_ = 0, color_ = 0;        // the bare ground and background
   GLuint light_framebuffer_ = 0, light_ = 0;  // key light and open sky, at half the resolution
   GLuint occlusion_texture_ = 0;
-  std::optional<Eigen::Matrix4f> bare_view_;  // that the bare ground was drawn with
-  Vec3 bare_lit_;                             // the same
-  StageColors bare_colors_;                   // the same, linear
+  std::optional<Eigen::Matrix4f> bare_view_;  // the view with which the bare ground was drawn
+  Vec3 bare_lit_;                             // the stage with which it was drawn, as `lit_`
+  StageColors bare_colors_;                   // the colours with which it was drawn, linear
   std::vector<float> cast_;                   // scratch: a mesh's shadow on the ground
 };
 

@@ -29,8 +29,9 @@ double gloss_of(const BodyDef& body) { return body.gloss.value_or(body.cloth ? 0
 
 namespace {
 
-// Returns the triangles before the last level, between the same vertices: they cast the shadow, whose border shows no
-// edges of so few pixels. Each was cut into four, of which the first three have a corner of it as their first.
+// Returns the triangles as they were before the last subdivision. They cast the shadow, because its border does not
+// show edges that are a few pixels long. Each triangle was cut into four, and the first corners of the first three of
+// these are the corners of the triangle.
 Triangles before_last_level(const Triangles& triangles) {
   Triangles before(triangles.rows() / 4, 3);
   for (Eigen::Index t = 0; t < before.rows(); ++t)
@@ -58,8 +59,8 @@ void smooth_for_pixels(DrawnBody& drawn, const Positions& rest, double pixel) {
   drawn.casters = before_last_level(drawn.skin.rest.triangles);
 }
 
-// A smooth surface swings over by a part of an edge where it leaves the ground. The ground would hide it there, so it
-// stays above where all do that it follows from.
+// Where a cloth leaves the ground, a smooth surface overshoots by a part of an edge, and the ground would hide it
+// there. So a place of it stays above the ground where all vertices do from which the place follows.
 Vec3 smooth_place(const SurfaceWeights& weights, Eigen::Index row, const Positions& now) {
   Vec3 place = weighted_point(weights, row, now);
   if (place.y() >= 0) return place;
@@ -77,7 +78,7 @@ std::vector<float> cloth_hollows(const DrawnBody& drawn, const Body& body, const
   const double radius = fold * bounds_of(body.description.mesh.rest).diagonal();
   std::vector<double> values = mean_curvature(now, surface);
   for (double& value : values) value = radius * value / (1 + radius * std::abs(value));
-  smooth_values(surface, 2, values);  // a grid wrinkles along its own lines, which are not seen so
+  smooth_values(surface, 2, values);  // a grid wrinkles along its own lines, and smoothing hides these wrinkles
   std::vector<float> result;
   for (std::size_t v = 0; v < drawn.skin.flat.size(); ++v)
     result.push_back(static_cast<float>(drawn.weights.rows() > 0

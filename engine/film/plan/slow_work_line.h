@@ -1,4 +1,5 @@
-// Shows what is being made before a film starts.
+// Shows what is being made before a film starts: on a terminal in a line that is renewed and wiped out at the end,
+// elsewhere in a plain line now and then, for what takes long.
 #pragma once
 
 #include <fmt/core.h>
@@ -10,8 +11,6 @@
 
 namespace supple {
 
-// Shows what is being made: a line that is renewed on a terminal and wiped out at the end;
-// elsewhere a plain line for what takes long.
 class SlowWorkLine {
  public:
   explicit SlowWorkLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
@@ -37,7 +36,7 @@ class SlowWorkLine {
   Stopwatch watch_;
 };
 
-// line: must outlive the result.
+// Returns slow work that is shown in a line, which must outlive the result. cache: whether it may use the user's cache.
 inline SlowWork slow_work_with(bool cache, SlowWorkLine& line) {
   return {cache ? UserCache::of_user() : UserCache(), [&line](const std::string& text) { line.show(text); }};
 }

@@ -68,7 +68,7 @@ class MeshWords {
     return announced_;
   }
 
-  // Tells that one more of the announced rows is complete, for messages.
+  // Counts one more of the announced rows as complete; messages say how many are.
   void end_row() { ++rows_; }
 
   // Refuses a number that follows the announced rows: there are more of them. numbers_a_row: 0 where rows differ, and
@@ -125,8 +125,8 @@ class MeshWords {
   std::string name_;
   std::size_t at_ = 0;
   int line_ = 1;
-  std::string section_;  // what was announced last, and how many rows of it were complete
-  Eigen::Index announced_ = 0, rows_ = 0;
+  std::string section_;                    // what was announced last
+  Eigen::Index announced_ = 0, rows_ = 0;  // how many rows of it were announced, and how many are complete
 };
 
 }  // namespace supple

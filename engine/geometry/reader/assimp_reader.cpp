@@ -59,7 +59,7 @@ void limit_this_process(const char* path) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
 }
 
-// Gives the process this many seconds from now on.
+// Gives the process this many seconds of processor time from now on.
 void allow_seconds(int seconds) {
   rusage used{};
   ::getrusage(RUSAGE_SELF, &used);

@@ -14,12 +14,12 @@ namespace {
 constexpr double finest_turn = std::numbers::pi / 12;  // between two normals of what is round [rad]
 constexpr int bevel_steps = 6;
 
-// A place on the outline of the hull, and the direction that points away from it there.
+// Describes a place on the outline of the hull, and the direction that points away from the hull there.
 struct OutlinePoint {
   Eigen::Vector2d place, normal;
 };
 
-// Walks around the hull, anticlockwise; where it turns, the normal does so in small steps.
+// Walks around the hull, anticlockwise. Where the outline turns, the normal turns in small steps.
 std::vector<OutlinePoint> outline_of(const std::vector<Eigen::Vector2d>& hull) {
   const std::size_t corners = hull.size();
   const auto normal_angle = [&](std::size_t i) {  // of the edge that begins at a corner
@@ -41,7 +41,7 @@ std::vector<OutlinePoint> outline_of(const std::vector<Eigen::Vector2d>& hull) {
   return outline;
 }
 
-// A ring of vertices: how far it lies from the hull, and how high.
+// Describes a ring of vertices: how far it lies from the hull, and how high.
 struct Ring {
   double away, height;
 };
@@ -87,7 +87,7 @@ TriMesh surface_of(const RoundedPrism& prism) {
   const double largest = bounds_of(mesh.points).diagonal();
   const auto add = [&](Eigen::Index a, Eigen::Index b, Eigen::Index c) {
     const Vec3 p = mesh.points.row(a), q = mesh.points.row(b), r = mesh.points.row(c);
-    const bool has_area = (q - p).cross(r - p).norm() > 1e-12 * largest * largest;  // not at the poles of a ball
+    const bool has_area = (q - p).cross(r - p).norm() > 1e-12 * largest * largest;  // false at the poles of a ball
     if (has_area) triangles.push_back({a, b, c});
   };
   for (Eigen::Index i = 0; i < around; ++i) {

@@ -1,5 +1,6 @@
-// Meshes, skins and embeddings as bytes, to be kept from run to run (base/user_cache.h). The bytes are for programs of
-// the same build on the same machine; formats for others are in mesh_file.h.
+// Turns meshes, skins and embeddings into bytes and back, so that they can be kept from run to run (base/user_cache.h).
+// The bytes are for programs of the same build on the same machine; formats for other programs are in
+// files/mesh_file.h.
 #pragma once
 
 #include <optional>
@@ -12,9 +13,9 @@
 namespace supple {
 
 std::string bytes_of(const TetMesh& mesh);
-std::optional<TetMesh> tet_mesh_from(std::string_view bytes);  // nothing where they are not those of a mesh
+std::optional<TetMesh> tet_mesh_from(std::string_view bytes);  // nothing where these are not the bytes of a mesh
 
-// A skin and how elements carry it.
+// Holds a skin, and how elements carry it.
 struct CarriedSkin {
   Skin skin;
   Embedding embedding;

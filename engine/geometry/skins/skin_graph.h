@@ -1,5 +1,5 @@
-// The places of a skin and which of them are joined by an edge, so that what belongs together can be told from what is
-// merely near.
+// Lists the places of a skin, and tells which of them an edge joins, so that what belongs together can be told from
+// what is merely near.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ struct SkinEdge {
   double length;  // [m]
 };
 
-// Skin vertices at exactly the same place, as along a crease, are one node.
+// Holds the places as nodes. Skin vertices at exactly the same place, as along a crease, are one node.
 struct SkinGraph {
   std::vector<std::int32_t> node_of;         // by skin vertex
   std::vector<std::int32_t> vertex_of;       // by node: one of its skin vertices

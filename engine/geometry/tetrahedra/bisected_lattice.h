@@ -1,4 +1,4 @@
-// A lattice of tetrahedra that are as small as each place asks for. Where neighbours are equally large it is
+// Makes a lattice of tetrahedra that are as small as each place asks for. Where neighbours are equally large it is
 // body-centred cubic; between two sizes elements are bisected at their longest edges until no edge has a vertex of
 // another element in its middle. Elements have one of four shapes, with dihedral angles of 45 to 120 degrees, which are
 // those of the graded lattice of Labelle and Shewchuk 2007, "Isosurface stuffing".

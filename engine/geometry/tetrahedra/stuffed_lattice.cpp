@@ -87,8 +87,8 @@ class IsosurfaceStuffing {
     return cuts < 0 ? lattice_position(s) : Vec3(lattice_position(s) + cuts_[std::size_t(cuts)].moved);
   }
 
-  // Runs chunks some at a time, and tells how far that is: sampling and finding cuts, which pass once each, take nearly
-  // all of the time.
+  // Runs some chunks at a time, and tells what share of the work is done. Sampling and finding cuts take nearly all of
+  // the time, and so count as half of the work each.
   template <class Visit>
   void run_chunks(int chunks, double done_before, const Visit& visit) {
     constexpr int at_once = 8, passes = 2;
@@ -117,8 +117,9 @@ class IsosurfaceStuffing {
     });
   }
 
-  // The surface is so far from a site, by what is known of the sites before it, that all of the site's edges lie on one
-  // side. What is kept of these sites is of no use beyond its sign and that it is no further away.
+  // Nothing is asked about a site where the sites before it show that the surface is so far away that all of the site's
+  // edges lie on one side. What is kept for such a site is only a bound: its sign is right, and the surface is at least
+  // that far away.
   void sample_at(const Site& s, int first_layer, LatticeProbe::Memory& near) {
     double clear = -1, side = 1;
     const auto look = [&](const Site& before, double away) {
@@ -235,12 +236,12 @@ class IsosurfaceStuffing {
   static bool is_long(const Site& a, const Site& b) { return (a[0] + b[0]) % 2 == 0; }
 
   int vertex(const Site& s) {
-    int& name = site_vertex_[id(s)];
-    if (name < 0) {
-      name = static_cast<int>(vertices_.size());
+    int& number = site_vertex_[id(s)];
+    if (number < 0) {
+      number = static_cast<int>(vertices_.size());
       vertices_.push_back(position(s).transpose());
     }
-    return name;
+    return number;
   }
 
   int cut_vertex(const Site& a, const Site& b) {
@@ -251,13 +252,13 @@ class IsosurfaceStuffing {
         Cuts& cuts = cuts_[std::size_t(cuts_of_[id(from)])];
         const double fraction = cuts.cut[std::size_t(e)];
         SUPPLE_CHECK(fraction, >=, 0.0);
-        int& name = cuts.cut_vertex[std::size_t(e)];
-        if (name < 0) {
-          name = static_cast<int>(vertices_.size());
+        int& number = cuts.cut_vertex[std::size_t(e)];
+        if (number < 0) {
+          number = static_cast<int>(vertices_.size());
           const Vec3 p = lattice_position(from), q = lattice_position(swapped ? a : b);
           vertices_.push_back((p + fraction * (q - p)).transpose());
         }
-        return name;
+        return number;
       }
     }
     SUPPLE_CHECK(0, ==, 1);
@@ -332,10 +333,10 @@ class IsosurfaceStuffing {
     if (outs == 0) {
       add(vertex(corners[0]), vertex(corners[1]), vertex(corners[2]), vertex(corners[3]));
     } else if (ins == 1) {
-      int names[3];
-      for (std::size_t k = 0; k < ons; ++k) names[k] = vertex(on[k]);
-      for (std::size_t k = 0; k < outs; ++k) names[ons + k] = cut_vertex(in[0], out[k]);
-      add(vertex(in[0]), names[0], names[1], names[2]);
+      int others[3];
+      for (std::size_t k = 0; k < ons; ++k) others[k] = vertex(on[k]);
+      for (std::size_t k = 0; k < outs; ++k) others[ons + k] = cut_vertex(in[0], out[k]);
+      add(vertex(in[0]), others[0], others[1], others[2]);
     } else if (ins == 3) {
       emit_three_inside({in[0], in[1], in[2]}, out[0]);
     } else if (outs == 1) {

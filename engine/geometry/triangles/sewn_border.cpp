@@ -14,10 +14,10 @@ namespace {
 
 using Cell = std::array<std::int64_t, 3>;
 
-// Holds the border of a surface whose vertices are sets of others.
+// Holds the border of a surface, each of whose vertices may stand for several that were joined.
 struct Border {
   std::vector<std::int32_t> vertices;                   // in increasing order
-  std::vector<std::array<std::int32_t, 2>> edges;       // with one triangle
+  std::vector<std::array<std::int32_t, 2>> edges;       // those that have one triangle
   std::map<std::int32_t, std::set<std::int32_t>> near;  // by border vertex: those to which an edge leads
 };
 

@@ -17,8 +17,8 @@ struct TriangleEdge {
   bool upward;       // whether the triangle runs from low to high
 };
 
-// Returns three edges for each triangle, in the order of low, high, triangle and side. The vertices' names must not be
-// negative.
+// Returns three edges for each triangle, in the order of low, high, triangle and side. The numbers of vertices must
+// not be negative.
 std::vector<TriangleEdge> sorted_edges(const Triangles& triangles);
 
 // Lists each edge once, at the first triangle that has it.

@@ -13,7 +13,7 @@ namespace supple {
 
 namespace {
 
-// Tells whether there is nothing but what another process leaves while it writes the mark.
+// Tells whether a folder holds nothing but the mark, or what another process leaves there while it writes the mark.
 bool is_new(const std::filesystem::path& folder, const std::string& mark) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {

@@ -117,7 +117,7 @@ bool looks_whole(const std::filesystem::path& png) {
 
 namespace {
 
-// format: as libpng names it. Returns the samples as the file's rgb.
+// Reads a picture. The samples, in a format that libpng names, become the rgb of the result, also those of coverage.
 PngImage read_as(const std::filesystem::path& path, std::uint32_t format) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;

@@ -15,8 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// These add to the row of a body. Four digits after the point are plenty for times; numbers that may be compared keep
-// all seventeen.
+// The functions add_...() put keys into the row of a body. Four digits after the point are plenty for times; numbers
+// that may be compared keep all seventeen.
 void add_step(const StepRow& step, Json& row) {
   row.update({{"step_ms", rounded_ms(step.step_ms)},
               {"evaluate_ms", rounded_ms(step.evaluate_ms)},
@@ -118,7 +118,7 @@ void read_if_there(const Json& json, const char* key, std::optional<Number>& val
   if (json.contains(key)) value = json.at(key).get<Number>();
 }
 
-// These read what the functions above add. Keys with a default were not written by earlier programs.
+// The functions read_...() and ..._row() read these keys. Keys with a default were not written by earlier programs.
 void read_step(const Json& json, StepRow& row) {
   json.at("step_ms").get_to(row.step_ms);
   json.at("evaluate_ms").get_to(row.evaluate_ms);

@@ -19,9 +19,9 @@ struct FrameWork {
   double encoding = 0;     // of the film: processor time of the encoder
 };
 
-// encoding: the encoder's time for a frame, which no row contains.
+// Returns the work of rows. encoding: the encoder's time for a frame, which no row contains.
 FrameWork work_of(const std::vector<FrameRow>& rows, double encoding);
-// Averages over the repeats as well. A profiled run makes no film.
+// Returns the work of a profile, averaged over its repeats as well. A profiled run makes no film.
 FrameWork work_of(const ZoneProfile& profile);
 
 // Returns a text such as "drawing is 71 % of the work for a frame (...): fewer samples, ... help"; empty where nothing

@@ -27,10 +27,10 @@ double metres_of_unit(const TriMesh& surface, const BodyDef& def) {
   return def.size ? *def.size / bounds_of(surface.points).extent().maxCoeff() : def.scale;
 }
 
-// Makes triangles of the wanted size. An edge is given as it is in the world, where the body has its size.
+// Makes triangles whose edges have the wanted length. edge: as it is in the world, where the body has its size [m];
 // lines: edges of the surface that stay as lines.
-RemeshedSurface of_edge(const TriMesh& surface, const std::vector<std::array<std::int32_t, 2>>& lines, double edge,
-                        const BodyDef& def, Body& body) {
+RemeshedSurface with_edges_of(const TriMesh& surface, const std::vector<std::array<std::int32_t, 2>>& lines,
+                              double edge, const BodyDef& def, Body& body) {
   const double scale = metres_of_unit(surface, def);
   // What needs more triangles than this is refused before it is made.
   constexpr double most_triangles = 1e6;
@@ -84,8 +84,8 @@ void sew(const BodyDef& def, TriMesh& surface, Body& body) {
         sewn.beside, *def.cloth->sew));
 }
 
-// Holds the triangles of a cloth from a file, and where their corners come from; nowhere where the file says nothing of
-// them.
+// Holds the triangles of a cloth from a file, and where in the file their corners come from. `corners` is empty where
+// the file gives no colours, places in a texture or names that would have to be found again.
 struct FileCloth {
   TriMesh surface;
   FileCorners corners;
@@ -141,7 +141,7 @@ TriMesh surface_for_cloth(const BodyDef& def, Body& body) {
   if (cloth.sew) sew(def, made.surface, body);
   body.files = {source_of(cloth.surface, made.surface)};
   if (cloth.edge) {
-    RemeshedSurface fine = of_edge(made.surface, lines_that_stay(def, made, file, body), *cloth.edge, def, body);
+    RemeshedSurface fine = with_edges_of(made.surface, lines_that_stay(def, made, file, body), *cloth.edge, def, body);
     if (!made.corners.empty()) made.corners = corners_in(made.corners, fine);
     made.surface = std::move(fine.mesh);
   }
@@ -153,7 +153,7 @@ TriMesh mesh_for_cloth(const BodyDef& def, Body& body) {
   body.source = def.cloth->mesh.string();
   TriMesh surface = read_surface(def.cloth->mesh);
   body.files = {source_of(def.cloth->mesh, surface)};
-  return def.cloth->edge ? of_edge(surface, {}, *def.cloth->edge, def, body).mesh : surface;
+  return def.cloth->edge ? with_edges_of(surface, {}, *def.cloth->edge, def, body).mesh : surface;
 }
 
 }  // namespace

@@ -8,17 +8,17 @@
 namespace supple {
 
 enum class WarningKind {
-  slivers,    // flat elements
+  slivers,    // the body has flat elements
   handle,     // a handle jumps when it grabs, or is soft for its load
   turning,    // the solver, by one level or by damping, keeps the body from turning
   stiffness,  // the body is stiffer than the iterations can solve
   inside,     // the body starts inside a collider
   fall,       // the body falls through the ground that the film shows
-  material,   // it gives no force, or softens, in the body's state
+  material,   // the material gives no force, or softens, in the body's state
   weight,     // the body's weight strains it much
   size,       // the body is small for its steps
-  regions,    // their stiffnesses are far apart
-  thin,       // a bar or a plate with few elements across
+  regions,    // the stiffnesses of the body's regions are far apart
+  thin,       // the body is a bar or a plate with few elements across
   delay,      // chebyshev's delay leaves no iteration to accelerate
   overlap,    // two bodies are in the same place (body_passings.h, body_depths.h; `inside`: overlaps.h)
   skin,       // the skin reaches far beyond the elements

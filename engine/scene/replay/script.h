@@ -65,8 +65,7 @@ class Script {
   void set_edits(LiveEdits edits);
   // Returns the replay with all edits, which `file` will have. frames: the length of its film; session: what the frames
   // so far have left. A file in the root folder names its scene with the whole path, so that it can be read anywhere.
-  // Throws InputError where `file`, or the one beside it that the scene needs, is the scene that was
-  // loaded.
+  // Throws InputError where `file`, or the one beside it that the scene needs, is the scene that was loaded.
   ReplayFiles replay_files(const std::filesystem::path& file, int frames, const PlayedSession& session = {}) const;
   // Returns the same with settings, as --set takes them, that hold at any time, whatever changes. Throws InputError.
   Script with(const std::vector<std::string>& settings) const;

@@ -1,8 +1,8 @@
 // Computes the energy of gas in a volume V and its derivatives. With an open amount the pressure above the atmosphere's
 // is constant, p, and the energy is -p (V - V0). A fixed amount at constant temperature (Boyle's law) keeps p V = p0 V0
 // with p absolute, and has the energy -p0 V0 log(V / V0) + p_atm (V - V0), where the atmosphere outside does the second
-// share. Below a twentieth of V0 this energy goes on as its second-order Taylor polynomial, which is finite for volumes
-// that are turned inside out. Not here: the volume of a surface (air_forces.h).
+// share. Below a twentieth of V0 this energy continues as its second-order Taylor polynomial, which is finite for
+// volumes that are turned inside out. Not here: the volume of a surface (air_forces.h).
 #pragma once
 
 #include "sim/model/air_inputs.h"
@@ -23,7 +23,7 @@ class GasLaw {
  private:
   double filled_;        // p0 V0, absolute; 0: an open amount [J]
   double gauge_;         // of an open amount [Pa]
-  double rest_, least_;  // V0, and the volume below which the energy goes on as a polynomial [m^3]
+  double rest_, least_;  // V0, and the volume below which the energy continues as a polynomial [m^3]
 };
 
 }  // namespace supple

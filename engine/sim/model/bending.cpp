@@ -50,7 +50,7 @@ double area_of_corner(const FlatTriangle& triangle, int corner) {
   return (side(corner, next) * angle_at(last) + side(corner, last) * angle_at(next)) / (16 * area);
 }
 
-// edge: the edge from corner `edge` to the next one.
+// Describes a triangle as its edge from corner `edge` to the next one sees it. number: the triangle's.
 Flap flap_of(const std::vector<FlatTriangle>& triangles, int number, int edge) {
   const FlatTriangle& triangle = triangles[std::size_t(number)];
   int from = edge, to = (edge + 1) % 3;
@@ -88,9 +88,9 @@ struct Square {
   std::vector<std::pair<int, double>> turned_by = {};  // triangles and their shares, for cloth that is curved at rest
 };
 
-// Returns the angle of a hinge between two triangles: (tip - foot) / height + (other tip - other foot) / other height,
-// two opposite unit vectors where it is flat, and 2 sin(angle/2) in length where it is not. Its energy is l^2 angle^2 /
-// (area + other area), of which it has a share.
+// Returns the square for a hinge between two triangles. Its sum is (tip - foot) / height + (other tip - other foot) /
+// other height: two unit vectors, which are opposite where the hinge is flat, so that the sum has the length 2
+// sin(angle/2). The energy of a hinge is B/2 l^2 angle^2 / (area + other area), of which the square has a share.
 Square hinge_of(const Edge& edge, const Flap& own, const Flap& other, double share) {
   return {{{own.tip, 1 / own.height},
            {other.tip, 1 / other.height},
@@ -100,6 +100,7 @@ Square hinge_of(const Edge& edge, const Flap& own, const Flap& other, double sha
           {{own.triangle, 0.5}, {other.triangle, 0.5}}};
 }
 
+// Finds the squares of flat cloth: one at each vertex inside, and one at each hinge near the border.
 class Squares {
  public:
   explicit Squares(const std::vector<FlatTriangle>& triangles) : flaps_(flaps_of(triangles)) {
@@ -116,7 +117,7 @@ class Squares {
     }
   }
 
-  // Calls visit(Square) for all of them.
+  // Calls visit(square) for all squares of the energy.
   template <class Visit>
   void for_each(const Visit& visit) const {
     std::map<std::int32_t, Square> laplacians;
@@ -174,7 +175,7 @@ struct Patch {
   std::array<Eigen::Vector2d, 6> place;
 };
 
-// Returns nothing where an edge has no other triangle, or several.
+// Returns the patch of a triangle; nothing where one of its edges has no other triangle, or several.
 std::optional<Patch> patch_of(const FlatTriangle& triangle, int number, const Flaps& flaps) {
   Patch patch;
   for (int e = 0; e < 3; ++e) {
