@@ -178,7 +178,7 @@ class RoundingPass {
       for (int k = 0; k < 3; ++k) middles.back()[std::size_t(k)] = middle_of(whole(t, k), whole(t, (k + 1) % 3));
     }
     append_vertices();
-    std::vector<TriangleCorners> parts;
+    std::vector<CornerNumbers> parts;
     for (Eigen::Index t = 0; t < whole.rows(); ++t)
       split_triangle({whole(t, 0), whole(t, 1), whole(t, 2)}, middles[std::size_t(t)], length2, parts);
     skin_.rest.triangles.resize(Eigen::Index(parts.size()), 3);

@@ -16,7 +16,7 @@ class Pass {
       : points_(points), ends_(ends), longest_(longest) {}
 
   // Appends the parts of a triangle: it alone where no edge is too long.
-  void split(const TriangleCorners& corners, std::vector<TriangleCorners>& parts) {
+  void split(const CornerNumbers& corners, std::vector<CornerNumbers>& parts) {
     std::array<std::int32_t, 3> middle;
     for (std::size_t k = 0; k < 3; ++k) middle[k] = middle_of(corners[k], corners[(k + 1) % 3]);
     split_triangle(
@@ -52,7 +52,7 @@ RefinedSurface refined(const TriMesh& surface, double longest, Eigen::Index most
   RefinedSurface result;
   std::vector<Vec3> points(std::size_t(surface.points.rows()));
   for (std::size_t v = 0; v < points.size(); ++v) points[v] = surface.points.row(Eigen::Index(v));
-  std::vector<TriangleCorners> triangles(std::size_t(surface.triangles.rows()));
+  std::vector<CornerNumbers> triangles(std::size_t(surface.triangles.rows()));
   std::vector<std::int32_t> parent(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (int k = 0; k < 3; ++k) triangles[t][std::size_t(k)] = surface.triangles(Eigen::Index(t), k);
@@ -61,7 +61,7 @@ RefinedSurface refined(const TriMesh& surface, double longest, Eigen::Index most
   // No triangle has more than four parts, so that a pass that starts below a fourth of the limit cannot exceed it.
   for (bool halved = true; halved && 4 * Eigen::Index(triangles.size()) <= most;) {
     Pass pass(points, result.ends, longest);
-    std::vector<TriangleCorners> parts;
+    std::vector<CornerNumbers> parts;
     std::vector<std::int32_t> parents;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       pass.split(triangles[t], parts);

@@ -7,14 +7,15 @@
 
 namespace supple {
 
-using TriangleCorners = std::array<std::int32_t, 3>;
+// The numbers of a triangle's three vertices.
+using CornerNumbers = std::array<std::int32_t, 3>;
 
 // Appends the parts of a triangle: it alone where no edge is cut. middle: of the edge from corner k to the next; -1
 // where it stays whole. Where two edges are cut, the shorter diagonal is taken. length2: returns the squared distance
 // of two vertices.
 template <class Length2>
-void split_triangle(const TriangleCorners& corners, const std::array<std::int32_t, 3>& middle, const Length2& length2,
-                    std::vector<TriangleCorners>& parts) {
+void split_triangle(const CornerNumbers& corners, const std::array<std::int32_t, 3>& middle, const Length2& length2,
+                    std::vector<CornerNumbers>& parts) {
   int halved = 0;
   for (const std::int32_t one : middle) halved += one >= 0 ? 1 : 0;
   if (halved == 0) {
