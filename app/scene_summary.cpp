@@ -148,9 +148,9 @@ std::string scene_summary(const SceneSource& source, int thread_count) {
                         scene.from->frame, scene.from->run.string());
   if (world.script().is_replay()) text += changes_text(world.script());
   for (const ColliderDef& collider : scene.colliders)
-    text += fmt::format("collider        '{}', friction {:g}{}\n", collider.name, collider.friction,
-                        collider.keys.empty() ? "" : ", moves") +
-            (collider.motion ? deforming_text(*collider.motion, scene.fps) : "");
+    text += fmt::format("collider        '{}', friction {:g}{}{}\n", collider.name, collider.friction,
+                        collider.keys.empty() ? "" : ", moves",
+                        collider.motion ? deforming_text(*collider.motion, scene.fps) : "");
   const std::vector<DrawnBody> drawn = drawn_bodies(world.bodies());
   std::vector<std::string> of_bodies;
   for (std::size_t b = 0; b < world.size(); ++b) of_bodies.push_back(body_text(world.body(b), drawn[b]));

@@ -59,6 +59,21 @@ TEST(Info, SaysWhereItsCostIsThatOfAFreeFall) {
   EXPECT_EQ(run(folder.path, {"info", "low.toml"}).out.find(words), std::string::npos);
 }
 
+TEST(Info, TellsHowAColliderDeforms) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"ball.obj", "ball_0.obj", "ball_1.obj", "ball_2.obj"})
+    std::ofstream(folder.path / name) << test::obj_text(test::sphere_surface(0.2, 8, 5));
+  std::string scene = bar_scene;
+  scene.insert(scene.find("[[collider]]"),
+               "[[collider]]\nname = \"ball\"\nshape = { surface = \"ball.obj\" }\nposition = [0, -5, 0]\n"
+               "motion = { file = \"ball_*.obj\", fps = 60, start = 0.5 }\n");
+  std::ofstream(folder.path / "bar.toml") << scene;
+  const Result result = run(folder.path, {"info", "bar.toml"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  expect_lines(result.out, {"collider        'ball', friction 0, deforms: 3 frames at 60 a second from 0.5 s on\n"
+                            "collider        'floor', friction 0\n"});
+}
+
 TEST(Info, GivesTheTerminalNoOrdersOfAScene) {
   const test::TemporaryFolder folder;
   std::string scene = bar_scene;

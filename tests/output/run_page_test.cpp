@@ -56,6 +56,13 @@ TEST(RunPage, HoldsEveryFramesValuesForItsCursor) {
   EXPECT_EQ(data["series"][7], (std::vector<double>{0, 1, 2, 3, 4, 5}));
 }
 
+TEST(RunPage, KnowsTheRateOfAFilmThatGoesOnFromAnEarlierOne) {
+  const test::TemporaryFolder folder;
+  RunRecord run = small_run(folder.path, 6);
+  for (FrameRow& row : run.rows) row.time_s += 2;
+  EXPECT_NEAR(data_of(run_page(run))["rate"].get<double>(), 25, 1e-9);
+}
+
 TEST(RunPage, ShowsPairsOfBodiesThatTouched) {
   const test::TemporaryFolder folder;
   RunRecord run = small_run(folder.path, 3);

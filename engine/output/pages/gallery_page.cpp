@@ -114,7 +114,7 @@ std::optional<Figures> figures_of(const GalleryScene& scene) {
       figures.motion_error = std::max(figures.motion_error.value_or(0), body.motion_estimate);
     }
   }
-  if (!times.empty() && figures.run.rows.front().time_s > 0) figures.fps = 1 / figures.run.rows.front().time_s;
+  figures.fps = figures.run.frame_rate().value_or(figures.fps);
   figures.solving = distribution_of(times);
   return figures;
 }

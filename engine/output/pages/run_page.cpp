@@ -304,7 +304,7 @@ std::string run_page(const RunRecord& run) {
   std::string title = scene.is_object() ? text_at(scene, "title") : "";
   if (title.empty()) title = std::filesystem::path(text_at(info, "scene_file")).stem().string();
   const std::size_t frames = run.rows.size();
-  const double rate = frames > 0 && run.rows.front().time_s > 0 ? 1 / run.rows.front().time_s : 30;
+  const double rate = run.frame_rate().value_or(30);
   const double seconds = static_cast<double>(frames) / rate;
   std::string html = page_begin(title, style_sheet) + film_html(run);
   html += "<h1>" + markup_text(title) + "</h1>\n";

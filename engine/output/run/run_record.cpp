@@ -33,6 +33,11 @@ std::string RunRecord::ended() const {
   return info.contains("ended") && info["ended"].is_string() ? info["ended"].get<std::string>() : "not known";
 }
 
+std::optional<double> RunRecord::frame_rate() const {
+  if (rows.size() < 2 || rows.back().time_s <= rows.front().time_s) return std::nullopt;
+  return double(rows.size() - 1) / (rows.back().time_s - rows.front().time_s);
+}
+
 bool is_run(const std::filesystem::path& folder) {
   std::error_code error;
   return std::filesystem::exists(folder / "run.json", error);

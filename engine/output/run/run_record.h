@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ struct RunRecord {
   std::filesystem::path surface(const std::string& body) const { return folder / "motion" / (body + ".obj"); }
   // Tells how the run ended, as run.json says: "done", "interrupted", "running" or the failure.
   std::string ended() const;
+  // Returns the frames a second, by the times of the rows. A film that goes on from an earlier one does not begin at
+  // the time of its first frame, so that one row alone tells nothing: nullopt.
+  std::optional<double> frame_rate() const;
 };
 
 // Tells whether a folder holds a run.
