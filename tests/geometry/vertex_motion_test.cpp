@@ -1,4 +1,5 @@
 // Tests that the motions of surfaces are read from all kinds of files alike, and which files are refused.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -8,6 +9,8 @@
 #include "geometry/files/vertex_motion.h"
 #include "support/bodies.h"
 #include "support/motion_files.h"
+#include "support/surfaces.h"
+#include "support/text_file.h"
 
 namespace supple {
 namespace vertex_motion_test {
@@ -45,7 +48,7 @@ TEST_F(VertexMotions, AllKindsOfFilesReadBackEqual) {
   Triangles triangles(1, 3);
   triangles << 0, 1, 2;
   for (std::size_t f = 0; f < frames.size(); ++f)
-    written(fmt::format("walk_{:04}.obj", 8 + 2 * f), test::obj_text(frames[f], triangles));
+    written(fmt::format("walk_{:04}.obj", 8 + 2 * f), test::obj_text({frames[f], triangles}));
   written("run/motion/blob.pc2", test::pc2_bytes(frames));
   const std::vector<std::filesystem::path> all = {written("walk.pc2", test::pc2_bytes(frames)),
                                                   written("walk.mdd", test::mdd_bytes(frames)),

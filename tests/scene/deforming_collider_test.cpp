@@ -1,5 +1,6 @@
 // Tests colliders that a motion deforms: beside the same colliders moved by keys, in what they do to bodies, in how
 // their solids follow their files, and in what is refused.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,6 +19,7 @@
 #include "support/played_world.h"
 #include "support/scene_text.h"
 #include "support/surfaces.h"
+#include "support/text_file.h"
 
 namespace supple {
 namespace deforming_collider_test {
@@ -44,12 +46,12 @@ class DeformingColliders : public testing::Test {
 
   // Writes a surface and its motion over a second as a series of OBJ files, whose numbers are exact.
   void write(const std::string& name, const TriMesh& mesh, const Motion& motion) const {
-    test::write_text(file(name + ".obj"), test::obj_text(mesh.points, mesh.triangles));
+    test::write_text(file(name + ".obj"), test::obj_text(mesh));
     for (int f = 0; f <= rate; ++f) {
       Positions now = mesh.points;
       for (Eigen::Index v = 0; v < now.rows(); ++v)
         now.row(v) = motion(mesh.points.row(v).transpose(), double(f) / rate).transpose();
-      test::write_text(file(fmt::format("{}_{}.obj", name, f)), test::obj_text(now, mesh.triangles));
+      test::write_text(file(fmt::format("{}_{}.obj", name, f)), test::obj_text({now, mesh.triangles}));
     }
   }
 

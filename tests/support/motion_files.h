@@ -1,7 +1,5 @@
-// Writes surfaces and their motions for tests: OBJ files, PC2 and MDD point caches.
+// Writes motions of surfaces for tests: PC2 and MDD point caches.
 #pragma once
-
-#include <fmt/format.h>
 
 #include <bit>
 #include <cstdint>
@@ -11,18 +9,8 @@
 #include <vector>
 
 #include "geometry/meshes/mesh.h"
-#include "support/text_file.h"
 
 namespace supple::test {
-
-inline std::string obj_text(const Positions& points, const Triangles& triangles) {
-  std::string text;
-  for (Eigen::Index v = 0; v < points.rows(); ++v)
-    text += fmt::format("v {} {} {}\n", points(v, 0), points(v, 1), points(v, 2));
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
-    text += fmt::format("f {} {} {}\n", triangles(t, 0) + 1, triangles(t, 1) + 1, triangles(t, 2) + 1);
-  return text;
-}
 
 // Appends four bytes, the lowest first or last.
 inline void append_word(std::string& bytes, std::uint32_t value, bool lowest_first) {
