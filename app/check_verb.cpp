@@ -122,9 +122,9 @@ void say_all(const Checked& checked, bool verbose) {
   const std::vector<Problem> list = said(all);
   for (const Problem& warning : list) say(stdout, fmt::format("warning: {}\n", warning.text()));
   const std::size_t meant = all.size() - list.size();
-  say(stdout, fmt::format("{}: no errors, {}{}; {} frames, {} {}\n", scene.name,
-                          count_text(long(list.size()), "warning"), meant > 0 ? fmt::format(" ({} meant)", meant) : "",
-                          scene.frames, checked.bodies.size(), checked.bodies.size() == 1 ? "body" : "bodies"));
+  say(stdout, fmt::format("{}: no errors, {}{}; {}, {} {}\n", scene.name, count_text(long(list.size()), "warning"),
+                          meant > 0 ? fmt::format(" ({} meant)", meant) : "", count_text(scene.frames, "frame"),
+                          checked.bodies.size(), checked.bodies.size() == 1 ? "body" : "bodies"));
   for (std::size_t b = 0; b < checked.bodies.size(); ++b) say_body(checked.bodies[b], checked.drawn[b], verbose);
   if (checked.script.is_replay())
     say(stdout,

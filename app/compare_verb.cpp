@@ -6,6 +6,7 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "output/files/json_text.h"
 #include "output/files/whole_file.h"
 #include "output/pages/report_table.h"
@@ -98,8 +99,9 @@ std::string clock_text(const RunRecord& a, const RunRecord& b) {
 }
 
 std::string text_of(const RunRecord& a, const RunRecord& b, const RunComparison& c) {
-  std::string text = fmt::format("  A               {} ({} frames, {})\n", a.folder.string(), c.frames_a, a.ended());
-  text += fmt::format("  B               {} ({} frames, {})\n", b.folder.string(), c.frames_b, b.ended());
+  std::string text =
+      fmt::format("  A               {} ({}, {})\n", a.folder.string(), count_text(c.frames_a, "frame"), a.ended());
+  text += fmt::format("  B               {} ({}, {})\n", b.folder.string(), count_text(c.frames_b, "frame"), b.ended());
   text += clock_text(a, b);
   text += fmt::format("  states          {}\n{}\n{}\n", states_text(c), motion_text(c), distance_table(c));
   text += times_text(c) + "\n";

@@ -90,7 +90,8 @@ int finish_film(const DrawCommand& command, const LoadedDrawing& drawing, std::o
                 int pictures, double seconds) {
   if (command.sheet) make_sheet(command, drawing);
   if (!video) {
-    if (!command.quiet) say(stdout, fmt::format("  {} pictures in {}\n", pictures, duration_text(seconds)));
+    if (!command.quiet)
+      say(stdout, fmt::format("  {} in {}\n", count_text(pictures, "picture"), duration_text(seconds)));
     return 0;
   }
   const VideoResult end = video->finish();
@@ -100,7 +101,7 @@ int finish_film(const DrawCommand& command, const LoadedDrawing& drawing, std::o
   const bool written = end.outcome == VideoOutcome::written;
   if (!written) say(stderr, fmt::format("warning: no film: {}; the pictures are whole\n", end.reason));
   if (command.quiet) return 0;
-  say(stdout, fmt::format("  {} pictures in {}\n", pictures, duration_text(seconds)));
+  say(stdout, fmt::format("  {} in {}\n", count_text(pictures, "picture"), duration_text(seconds)));
   if (written)
     say(stdout,
         fmt::format("  film     {}\n", (command.folder() / film_file(coding_of(command, drawing).chosen())).string()));
@@ -223,7 +224,7 @@ int write_skin_files(const DrawCommand& command, LoadedDrawing& drawing) {
     return 130;
   }
   if (!command.quiet)
-    say(stdout, fmt::format("  {} frames of {} in {}\n", count,
+    say(stdout, fmt::format("  {} of {} in {}\n", count_text(count, "frame"),
                             count_text(int(drawing.film.world.bodies().size()), "skin"), where));
   return 0;
 }

@@ -90,8 +90,8 @@ void print_result(const FilmResult& result, const RunFolder& folder, const Scene
   const int made = result.rows.size() - result.kept_frames;
   const std::string kept = result.kept_frames > 0 ? fmt::format(" after {} from before", result.kept_frames) : "";
   const std::string rate = made > 0 ? fmt::format("{:.1f} a second; ", made / seconds) : "";
-  say(stdout, fmt::format("  {} frames{} in {} ({}the film's rate is {}), after {} of set-up\n", made, kept,
-                          duration_text(seconds), rate, scene.fps.text(), duration_text(result.setup_ms / 1000)));
+  say(stdout, fmt::format("  {}{} in {} ({}the film's rate is {}), after {} of set-up\n", count_text(made, "frame"),
+                          kept, duration_text(seconds), rate, scene.fps.text(), duration_text(result.setup_ms / 1000)));
   if (const std::string played = result.tally.session_text(); !played.empty())
     say(stdout, fmt::format("  session  {}\n", played));
   if (result.video_written) say(stdout, fmt::format("  film     {}\n", result.video.string()));
@@ -178,9 +178,8 @@ int say_result(const FilmCommand& command, const EndOfRun& end) {
     say(stderr, fmt::format("{}: {}\n", result.video_failed ? "supple" : "warning", result.video_message));
   if (!result.stills_message.empty()) say(stderr, fmt::format("supple: {}\n", result.stills_message));
   if (result.end == FilmEnd::interrupted) {
-    say(stderr, fmt::format("supple: interrupted after {} frames; they are whole, and so is what belongs to them in "
-                            "{}{}\n",
-                            result.rows.size(), folder.path().string(), resuming_text(end)));
+    say(stderr, fmt::format("supple: interrupted after {}; they are whole, and so is what belongs to them in {}{}\n",
+                            count_text(long(result.rows.size()), "frame"), folder.path().string(), resuming_text(end)));
     return 130;
   }
   const bool all_written = !result.video_failed && unrecorded.empty() && result.stills_message.empty();

@@ -99,19 +99,34 @@ int make_film_of(const SplitCommand& command, const Drawn& drawn) {
   return 0;
 }
 
-// Gives the fields of all panels one range, the widest of theirs, so that equal colours mean equal values.
+// Refuses a run whose pictures have another size than those of the first one.
+void require_same_size(const SplitCommand& command, const std::string& run, const OutputDef& output,
+                       const OutputDef& first) {
+  if (output.width == first.width && output.height == first.height) return;
+  throw InputError(run, fmt::format("has pictures of {} x {} pixels, and {} has pictures of {} x {}: --size gives all "
+                                    "runs one size",
+                                    output.width, output.height, command.runs.front(), first.width, first.height));
+}
+
+// Gives the fields of all panels one range, the widest of theirs, so that equal colours mean equal values. Throws
+// InputError where the runs' pictures have different sizes.
 SplitCommand with_one_range(SplitCommand command) {
   std::optional<Eigen::Vector2d> all;
+  std::optional<OutputDef> first;
+  bool needs_range = true;
   for (const std::string& run : command.runs) {
     DrawPlan plan = command.plan;
     plan.run = run;
     LoadedDrawing drawing = load_drawing(plan);
-    const FieldDef& field = drawing.film.world.script().scene().field;
-    if (field.quantity == FieldQuantity::none || field.range) return command;
+    const SceneDef scene = drawing.film.world.script().scene();
+    if (!first) first = scene.output;
+    require_same_size(command, run, scene.output, *first);
+    needs_range = needs_range && scene.field.quantity != FieldQuantity::none && !scene.field.range;
+    if (!needs_range) continue;
     const Eigen::Vector2d range = field_range(drawing);
     all = all ? Eigen::Vector2d(std::min(all->x(), range.x()), std::max(all->y(), range.y())) : range;
   }
-  if (all) command.plan.settings.push_back(fmt::format("field.range=[{}, {}]", all->x(), all->y()));
+  if (needs_range && all) command.plan.settings.push_back(fmt::format("field.range=[{}, {}]", all->x(), all->y()));
   return command;
 }
 
@@ -132,9 +147,9 @@ void open_split(const SplitCommand& command) {
 int draw_split(const SplitCommand& asked) {
   const Stopwatch watch;
   const FolderLock lock(asked.folder);
-  open_split(asked);
-  catch_interrupts();
   const SplitCommand command = with_one_range(asked);
+  open_split(command);
+  catch_interrupts();
   const int columns = columns_of(command.layout, static_cast<int>(command.runs.size()));
   Drawn drawn;
   drawn.screen.columns = columns;
@@ -149,8 +164,8 @@ int draw_split(const SplitCommand& asked) {
   }
   const int status = make_film_of(command, drawn);
   if (status == 0 && !command.quiet)
-    say(stdout, fmt::format("  {} pictures of {} runs in {}\n", drawn.frames.size(), drawn.screen.panels.size(),
-                            duration_text(watch.elapsed_ms() / 1000)));
+    say(stdout, fmt::format("  {} of {} runs in {}\n", count_text(long(drawn.frames.size()), "picture"),
+                            drawn.screen.panels.size(), duration_text(watch.elapsed_ms() / 1000)));
   return status;
 }
 

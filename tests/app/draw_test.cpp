@@ -363,6 +363,22 @@ TEST_F(DrawnRun, StandsBesideAnotherRun) {
   EXPECT_EQ(wrong.status, 2);
 }
 
+TEST_F(DrawnRun, StandsBesideAnotherRunOfItsSize) {
+  ASSERT_EQ(run(folder_->path, {"replay", "replay.toml", "--out", "wide-run", "--quiet", "--no-images", "--frames", "8",
+                                "--set", "output.width=128"})
+                .status,
+            0);
+  const Result apart = run(folder_->path, {"draw", "run", "wide-run", "--out", "two-sizes", "--quiet"});
+  EXPECT_EQ(apart.status, 2);
+  EXPECT_NE(apart.err.find("wide-run: has pictures of 128 x "), std::string::npos) << apart.err;
+  EXPECT_NE(apart.err.find("--size gives all runs one size"), std::string::npos) << apart.err;
+  EXPECT_FALSE(std::filesystem::exists(path("two-sizes") / "draw.json"));
+  EXPECT_EQ(run(folder_->path,
+                {"draw", "run", "wide-run", "--out", "two-sizes", "--quiet", "--size", "96x64", "--format", "png"})
+                .status,
+            0);
+}
+
 TEST_F(DrawnRun, HasTheWholeMotionInThePicture) {
   ASSERT_EQ(draw("framed", {"--set", "camera.frames=film"}).status, 0);
   EXPECT_NE(picture("framed", 5), picture("run", 5));
@@ -415,6 +431,9 @@ TEST_F(DrawnRun, ShowsTheGhostOfAnotherRun) {
   ASSERT_EQ(draw("own-ghost", {"--set", "look.ghost=run"}).status, 0);
   EXPECT_EQ(picture("own-ghost", 0), picture("run", 0)) << "a ghost in the same place is hidden";
   EXPECT_EQ(draw("none", {"--set", "look.ghost=nowhere"}).status, 2);
+  const Result plain = draw("none", {"--set", "look.ghost=run", "--set", "output.samples=1"});
+  EXPECT_EQ(plain.status, 2);
+  EXPECT_NE(plain.err.find("output.samples must be 2 or more"), std::string::npos) << plain.err;
   ASSERT_EQ(
       run(folder_->path, {"replay", "replay.toml", "--out", "short-run", "--quiet", "--no-images", "--frames", "8"})
           .status,

@@ -74,6 +74,8 @@ void check_references(const SceneDef& scene, const std::vector<Body>& bodies, in
   };
   if (scene.field.quantity == FieldQuantity::distance) check(scene.field.reference);
   check(scene.look.ghost);
+  if (!scene.look.ghost.empty() && scene.output.samples < 2)
+    throw InputError("look.ghost", "a ghost takes every second sample of a pixel: output.samples must be 2 or more");
 }
 
 }  // namespace supple

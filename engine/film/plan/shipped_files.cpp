@@ -1,6 +1,7 @@
 #include "film/plan/shipped_files.h"
 
 #include <algorithm>
+#include <iterator>
 #include <system_error>
 
 #include "base/companion_program.h"
@@ -43,6 +44,16 @@ std::vector<std::string> shipped_names(const std::string& kind) {
 
 namespace {
 
+// Names the installed families whose names begin as the word does, or the one that is nearest to it.
+std::string similar_families(const std::string& word) {
+  const std::vector<std::string> all = font_families();
+  std::vector<std::string> begin_so;
+  std::ranges::copy_if(all, std::back_inserter(begin_so), [start = lowercase(word)](const std::string& family) {
+    return lowercase(family).starts_with(start);
+  });
+  return begin_so.empty() ? did_you_mean(word, all) : "; there is " + name_list(std::move(begin_so));
+}
+
 Font font_asked_for(const TextDef& text) {
   if (!searches_fonts())
     throw InputError({Problem{text.font_place,
@@ -50,7 +61,7 @@ Font font_asked_for(const TextDef& text) {
                               "(Debian: libfontconfig-dev, libraqm-dev)"}});
   if (std::optional<Font> font = font_of_family(text.font)) return *font;
   throw InputError({Problem{text.font_place, fmt::format("font: no font of the family '{}' is installed{}", text.font,
-                                                         did_you_mean(text.font, font_families()))}});
+                                                         similar_families(text.font))}});
 }
 
 }  // namespace

@@ -106,17 +106,13 @@ Image split_picture(const SplitScreen& screen, int picture, int frame) {
   Grid grid{};
   Sticker legend;
   for (std::size_t p = 0; p < screen.panels.size(); ++p) {
-    const std::filesystem::path file = picture_file(screen.panels[p].frames, picture);
-    const PngImage panel = read_png(file);
+    const PngImage panel = read_png(picture_file(screen.panels[p].frames, picture));
     if (p == 0) {
       grid = grid_of(panel, static_cast<int>(screen.panels.size()), screen.columns);
       if (screen.legend) legend = legend_of(*screen.legend, screen.font, panel.width, panel.height);
       if (legend.width() > 0) grid.legend = legend.width() + 2 * grid.em;
       image = blank(grid);
     }
-    if (panel.width != grid.panel_width || panel.height != grid.panel_height)
-      throw InputError(file.string(), fmt::format("has {} x {} pixels, and the first run's pictures have {} x {}",
-                                                  panel.width, panel.height, grid.panel_width, grid.panel_height));
     const int x = static_cast<int>(p) % grid.columns * (grid.panel_width + grid.gap);
     const int y = static_cast<int>(p) / grid.columns * (grid.panel_height + grid.strip);
     paste(panel, image, x, y);
