@@ -27,17 +27,6 @@ constexpr const char* vtk_type<std::int32_t> = "Int32";
 template <>
 constexpr const char* vtk_type<std::uint8_t> = "UInt8";
 
-void append_base64(const std::vector<std::uint8_t>& bytes, std::string& text) {
-  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  text.reserve(text.size() + (bytes.size() + 2) / 3 * 4);
-  for (std::size_t at = 0; at < bytes.size(); at += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - at);
-    std::uint32_t group = 0;
-    for (std::size_t i = 0; i < 3; ++i) group = group << 8 | (i < count ? bytes[at + i] : 0u);
-    for (std::size_t i = 0; i < 4; ++i) text += i <= count ? digits[group >> (18 - 6 * i) & 63u] : '=';
-  }
-}
-
 template <class T>
 void append_array(const std::string& name, int components, std::span<const T> values, std::string& text) {
   const std::uint64_t length = values.size_bytes();
@@ -46,8 +35,7 @@ void append_array(const std::string& name, int components, std::span<const T> va
   if (length > 0) std::memcpy(bytes.data() + sizeof length, values.data(), length);
   text += fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">\n", vtk_type<T>,
                       markup_text(name), components);
-  append_base64(bytes, text);
-  text += "\n</DataArray>\n";
+  text += base64_text(bytes) + "\n</DataArray>\n";
 }
 
 void append_data(const char* element, const std::vector<VtuArray>& arrays, std::size_t rows, std::string& text) {

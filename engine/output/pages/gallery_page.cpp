@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "base/read_file.h"
 #include "output/files/json_text.h"
 #include "output/files/markup.h"
 #include "output/pages/page_parts.h"
@@ -117,12 +116,6 @@ std::optional<Figures> figures_of(const GalleryScene& scene) {
   figures.fps = figures.run.frame_rate().value_or(figures.fps);
   figures.solving = distribution_of(times);
   return figures;
-}
-
-std::string data_address(const std::filesystem::path& file, const char* kind) {
-  const std::string bytes = read_file(file);
-  return fmt::format("data:{};base64,{}", kind,
-                     base64_text({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}));
 }
 
 bool has_film(const GalleryScene& scene) {

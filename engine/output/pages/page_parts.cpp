@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "base/read_file.h"
 #include "output/files/markup.h"
 
 namespace supple {
@@ -95,6 +96,12 @@ std::string page_begin(const std::string& title, std::string_view style) {
 
 std::string page_end(std::string_view script) {
   return fmt::format("<script>{}{}</script></body></html>\n", common_script, script);
+}
+
+std::string data_address(const std::filesystem::path& file, std::string_view type) {
+  const std::string bytes = read_file(file);
+  return fmt::format("data:{};base64,{}", type,
+                     base64_text({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}));
 }
 
 std::string curve_color(std::size_t number) { return fmt::format("var(--curve{})", number % curve_colors); }

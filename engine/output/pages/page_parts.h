@@ -1,8 +1,9 @@
 // Holds what all pages have in common: the head of the document, colours for light and dark screens and for paper,
-// tables that keys scroll and sort, and the mark of what has the focus. Not here: what only one kind of page has
-// (run_page.cpp, gallery_page.cpp, report_page.cpp).
+// tables that keys scroll and sort, the mark of what has the focus, and files within the page. What only one kind of
+// page has is in run_page.cpp, gallery_page.cpp and report_page.cpp.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,10 @@ std::string page_begin(const std::string& title, std::string_view style);
 
 // Returns the scripts and the end of a document. script: the page's own.
 std::string page_end(std::string_view script);
+
+// Returns a file as a data: address, so that a page needs no other file. type: of the file, such as "image/png". Throws
+// InputError naming the file where it cannot be read.
+std::string data_address(const std::filesystem::path& file, std::string_view type);
 
 // Returns the colour of a graph's curve, as a style has it; the colours of a page on a dark screen are lighter ones.
 std::string curve_color(std::size_t number);

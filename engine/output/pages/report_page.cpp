@@ -206,13 +206,12 @@ std::string plot_figure(const ReportPlot& plot, const std::filesystem::path& fol
 }
 
 std::string picture_figure(const ReportPicture& picture, const std::filesystem::path& folder) {
-  std::ifstream file(folder / (picture.name + ".png"), std::ios::binary);
-  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
   return fmt::format(
-      "<figure id=\"{0}\" class=\"picture\">\n<img alt=\"{1}\" src=\"data:image/png;base64,{2}\">\n"
+      "<figure id=\"{0}\" class=\"picture\">\n<img alt=\"{1}\" src=\"{2}\">\n"
       "<figcaption><h3>{1}</h3>\n{3}</figcaption>\n<p class=\"files\">File: <a href=\"{0}.png\">{0}.png</a></p>\n"
       "</figure>\n",
-      picture.name, markup_text(picture.title), base64_text(bytes), paragraphs(picture.note));
+      picture.name, markup_text(picture.title), data_address(folder / (picture.name + ".png"), "image/png"),
+      paragraphs(picture.note));
 }
 
 // Anchors of sections are kept apart from those of tables and plots, whose names are also file names.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "output/files/json_text.h"
@@ -141,12 +140,6 @@ show(0);
 follow();
 )js";
 
-std::string file_as_base64(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
-  return base64_text({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
-}
-
 std::string film_html(const RunRecord& run) {
   std::error_code error;
   const auto picture_of = [&](std::size_t frame) {
@@ -158,22 +151,22 @@ std::string film_html(const RunRecord& run) {
     if (!std::filesystem::exists(film, error)) continue;
     // The still is the film's poster, and what paper shows of it.
     return fmt::format(
-        "<video controls loop muted playsinline preload=\"auto\" src=\"data:video/{};base64,{}\"></video>\n"
+        "<video controls loop muted playsinline preload=\"auto\" src=\"{}\"></video>\n"
         "<img class=\"picture paper\" alt=\"a picture of the film\"{}>\n"
         "<p class=\"soft keys screen\"><kbd>Space</kbd> plays and stops, <kbd>←</kbd> <kbd>→</kbd> step by one frame, "
         "<kbd>Home</kbd> <kbd>End</kbd> go to the first and the last.</p>\n",
-        kind, file_as_base64(film),
-        poster ? " src=\"data:image/png;base64," + file_as_base64(picture_of(0)) + "\"" : "");
+        data_address(film, std::string("video/") + kind),
+        poster ? " src=\"" + data_address(picture_of(0), "image/png") + "\"" : "");
   }
   if (std::filesystem::exists(run.folder / "video.gif", error))
-    return fmt::format("<img class=\"picture\" alt=\"the film\" src=\"data:image/gif;base64,{}\">\n",
-                       file_as_base64(run.folder / "video.gif"));
+    return fmt::format("<img class=\"picture\" alt=\"the film\" src=\"{}\">\n",
+                       data_address(run.folder / "video.gif", "image/gif"));
   if (run.rows.empty() || !std::filesystem::exists(picture_of(run.rows.size() - 1), error))
     return "<p class=\"soft\">This run has no film.</p>\n";
   return fmt::format(
-      "<img class=\"picture\" alt=\"the last frame\" src=\"data:image/png;base64,{}\">\n"
+      "<img class=\"picture\" alt=\"the last frame\" src=\"{}\">\n"
       "<p class=\"soft\">This run has no film; this is its last picture.</p>\n",
-      file_as_base64(picture_of(run.rows.size() - 1)));
+      data_address(picture_of(run.rows.size() - 1), "image/png"));
 }
 
 constexpr std::array slowest_heads = {"all stages [ms]", "solving", "of it evaluating", "of it linear solves",
