@@ -282,10 +282,8 @@ void check_name(const ConfigTable& table, const std::string& name) {
   }
 }
 
-}  // namespace
-
-BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
-  BodyDef body;
+// Reads what names the body, in messages and in pictures.
+void read_name_and_label(const ConfigTable& table, BodyDef& body) {
   body.place = table.place(nullptr);
   body.name = table.text({"name", "", "addresses the body in --set and in reports"}, "body");
   check_name(table, body.name);
@@ -295,6 +293,10 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
       {"label", "",
        "caption in the pictures; the default is the name, and none for a body that is alone and has no name"},
       body.name);
+}
+
+// Reads what the body is made of, and how elements are made of that.
+void read_geometry(const ConfigTable& table, BodyDef& body) {
   body.shape = table.file({"shape", "", "a shape file, to be meshed here"});
   body.surface = table.file({"surface", "", "a triangle surface (OBJ, PLY, STL, glTF, OFF), to be meshed here"});
   body.mesh = table.file({"mesh", "", "a tetrahedral mesh (MEDIT .mesh, Gmsh .msh, TetGen .ele, VTK .vtk or .vtu)"});
@@ -321,10 +323,17 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   // A thickness is given for the finished body, so the surface must get its size before it is thickened.
   if (body.surface_options.thickness > 0 && body.size) body.surface_options.size = *body.size;
   body.surface_options.thickness /= body.scale;
+}
+
+void read_place(const ConfigTable& table, BodyDef& body) {
   body.position = table.vector({"position", "m", "of the middle of the bounding box's bottom"}, Vec3(0, 0, 0));
   body.turn_deg =
       table.vector({"turn_deg", "degrees", "rotation about x, then y, then z, before it is placed"}, Vec3(0, 0, 0));
   body.table_turn_deg = body.turn_deg;
+}
+
+// Reads mass and materials.
+void read_matter(const ConfigTable& table, BodyDef& body) {
   body.density = table.number_if_given(
       {"density", "kg/m^3", "mass by volume; of cloth by area [kg/m^2]; the preset's, 1000, or 0.2 for cloth"},
       Range::positive());
@@ -336,6 +345,10 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   } else {
     read_substances(table, body);
   }
+}
+
+// Reads the state in which the film begins.
+void read_beginning(const ConfigTable& table, BodyDef& body) {
   body.start = read_start(table);
   body.start_inside = table.word<StartInside>(
       {"start_inside", "",
@@ -347,22 +360,29 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
       table.vector({"spin_deg", "degrees/s",
                     "at the start, about an axis through the centre of mass: its direction times the speed"},
                    Vec3(0, 0, 0));
-  body.drag = read_drag(table);
-  body.pressure = read_pressure(table);
-  body.pressure_place = table.place("pressure");
-  body.contact = read_contact(table);
-  if (body.cloth && body.contact.restitution > 0)
-    table.complain("contact", "contact.restitution is for solids: a cloth has no motion as a whole that could bounce");
+}
+
+void read_handles(const ConfigTable& table, BodyDef& body) {
   std::set<std::string> names;
   for (const ConfigTable& row : table.tables({"handles", "", "vertices that follow a motion from outside"})) {
     body.handles.push_back(read_handle(row));
     if (!names.insert(body.handles.back().name).second)
       row.complain("name", fmt::format("two handles named '{}'", body.handles.back().name));
   }
-  body.solver = defaults;
-  if (const auto solver = table.table({"solver", "", "this body's own, over the scene's"}))
-    body.solver = read_solver(*solver, defaults);
-  read_flow(table, body);
+}
+
+// Reads what acts on the body from outside.
+void read_influences(const ConfigTable& table, BodyDef& body) {
+  body.drag = read_drag(table);
+  body.pressure = read_pressure(table);
+  body.pressure_place = table.place("pressure");
+  body.contact = read_contact(table);
+  if (body.cloth && body.contact.restitution > 0)
+    table.complain("contact", "contact.restitution is for solids: a cloth has no motion as a whole that could bounce");
+  read_handles(table, body);
+}
+
+void read_looks(const ConfigTable& table, BodyDef& body) {
   body.pattern = read_pattern(table, body);
   body.pattern_size = table.number_if_given(
       {"pattern_size", "m", "edge of its squares; a sixth of the middle side, of cloth a twentieth of the longest"},
@@ -381,6 +401,23 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   body.finish = read_finish(table);
   body.skin_cells = table.number({"skin_cells", "", "cells of the drawn skin along the longest side of a shape"}, 72,
                                  Range::between(8, 400));
+}
+
+}  // namespace
+
+BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
+  BodyDef body;
+  read_name_and_label(table, body);
+  read_geometry(table, body);
+  read_place(table, body);
+  read_matter(table, body);
+  read_beginning(table, body);
+  read_influences(table, body);
+  body.solver = defaults;
+  if (const auto solver = table.table({"solver", "", "this body's own, over the scene's"}))
+    body.solver = read_solver(*solver, defaults);
+  read_flow(table, body);
+  read_looks(table, body);
   return body;
 }
 

@@ -78,14 +78,24 @@ FrameRate read_rate(const ConfigTable& root, const FrameRate& usual) {
   return usual;
 }
 
-}  // namespace
+// Holds the names of a kind of tables, each of which may be given once.
+class GivenNames {
+ public:
+  explicit GivenNames(std::string kind) : kind_(std::move(kind)) {}
 
-SceneDef read_scene(Config& config) {
-  SceneDef scene;
-  scene.assets = config.assets();
-  scene.name = std::filesystem::path(config.name()).stem().string();
-  const ConfigTable root = config.root();
-  (void)root.integer({"version", "", "of this format"}, 1, Range::between(1, 1));
+  // Complains in the table where another one has the name.
+  void add(const ConfigTable& table, const std::string& name) {
+    if (!names_.insert(name).second) table.complain("name", fmt::format("two {} named '{}'", kind_, name));
+  }
+  const std::set<std::string>& all() const { return names_; }
+
+ private:
+  std::string kind_;
+  std::set<std::string> names_;
+};
+
+// Reads how long the film is, and what holds for all that is in it.
+void read_film(const ConfigTable& root, SceneDef& scene) {
   scene.title = root.text({"title", "", "for people; pictures show it where `text.title` asks for it"}, "");
   scene.frames = root.integer({"frames", "", "length of the film"}, scene.frames, Range::between(1, 1000000));
   scene.fps = read_rate(root, scene.fps);
@@ -96,9 +106,12 @@ SceneDef read_scene(Config& config) {
       root.integer({"seed", "", "of random start states and of gusts"}, 1, Range::between(0, 2e9)));
   scene.from = read_from(root, scene.fps);
   scene.wind = read_wind(root, scene.seed);
+}
+
+// Reads the bodies, with the copies that are scattered and those of several pieces.
+void read_bodies(Config& config, const ConfigTable& root, SceneDef& scene, GivenNames& names) {
   SolverDef defaults;
   if (const auto solver = root.table({"solver", "", "for all bodies"})) defaults = read_solver(*solver, defaults);
-  std::set<std::string> names;
   const std::vector<Scattering> scatterings = read_scatterings(root, scene.seed);
   std::vector<std::string> tables;
   for (const ConfigTable& table : root.tables({"body", "", "what moves"})) {
@@ -106,7 +119,7 @@ SceneDef read_scene(Config& config) {
     tables.push_back(read.name);
     for (BodyDef& copy : copies_of(scatterings, table, std::move(read))) {
       for (BodyDef& body : bodies_of(table, std::move(copy))) {
-        if (!names.insert(body.name).second) table.complain("name", fmt::format("two bodies named '{}'", body.name));
+        names.add(table, body.name);
         scene.bodies.push_back(std::move(body));
       }
     }
@@ -116,52 +129,74 @@ SceneDef read_scene(Config& config) {
   // A body that is alone and has no name needs no caption.
   const std::vector<ConfigTable> given = root.tables({"body", "", "what moves"});
   if (given.size() == 1 && !given.front().has("name") && !given.front().has("label")) scene.bodies.front().label = "";
-  std::set<std::string> colliders;
+}
+
+void read_colliders(const ConfigTable& root, SceneDef& scene, GivenNames& names) {
   for (const ConfigTable& table : root.tables({"collider", "", "rigid, and in the way"})) {
     scene.colliders.push_back(read_collider(table));
-    if (!colliders.insert(scene.colliders.back().name).second)
-      table.complain("name", fmt::format("two colliders named '{}'", scene.colliders.back().name));
+    names.add(table, scene.colliders.back().name);
   }
-  if (scene.bodies.empty()) root.complain("a scene needs at least one [[body]]");
-  check_attached(scene, config, names, colliders);
+}
 
-  if (const auto camera = root.table({"camera", "", "where the film is seen from"})) {
-    scene.camera = read_camera(*camera, scene.camera);
-    std::vector<std::string> all(names.begin(), names.end());
-    all.insert(all.end(), colliders.begin(), colliders.end());
-    for (const auto& [key, name] : {std::pair{"follow", scene.camera.follow}, {"focus", scene.camera.focus_on}}) {
-      if (name.empty() || names.contains(name) || colliders.contains(name)) continue;
-      camera->complain(key,
-                       fmt::format("{}: no body or collider is called '{}'{}", key, name, did_you_mean(name, all)));
-    }
+// Reads the camera, which may name what the scene has.
+void read_view(const ConfigTable& root, const std::set<std::string>& bodies, const std::set<std::string>& colliders,
+               SceneDef& scene) {
+  const auto camera = root.table({"camera", "", "where the film is seen from"});
+  if (!camera) return;
+  scene.camera = read_camera(*camera, scene.camera);
+  std::vector<std::string> all(bodies.begin(), bodies.end());
+  all.insert(all.end(), colliders.begin(), colliders.end());
+  for (const auto& [key, name] : {std::pair{"follow", scene.camera.follow}, {"focus", scene.camera.focus_on}}) {
+    if (name.empty() || bodies.contains(name) || colliders.contains(name)) continue;
+    camera->complain(key, fmt::format("{}: no body or collider is called '{}'{}", key, name, did_you_mean(name, all)));
   }
+}
+
+void read_output(const ConfigTable& root, OutputDef& output) {
+  const auto table = root.table({"output", "", "the pictures"});
+  if (!table) return;
+  output.width =
+      table->integer({"width", "pixels", "even, for the film's encoder"}, output.width, Range::between(16, 8192));
+  output.height =
+      table->integer({"height", "pixels", "even, for the film's encoder"}, output.height, Range::between(16, 8192));
+  read_size(*table, output);
+  if (output.width % 2 != 0) table->complain("width", "width: must be even");
+  if (output.height % 2 != 0) table->complain("height", "height: must be even");
+  output.samples = table->integer({"samples", "", "antialiasing samples a pixel: 1, 2, 4 or 8"}, output.samples,
+                                  Range::between(1, 8));
+  if ((output.samples & (output.samples - 1)) != 0) table->complain("samples", "samples: must be 1, 2, 4 or 8");
+  output.blur_samples = table->integer({"blur_samples", "",
+                                        "pictures of which one is the mean where camera.shutter or aperture "
+                                        "blur it; 0: 16 to 128, as the blur asks for"},
+                                       output.blur_samples, Range::between(0, 8192));
+  output.energy = table->boolean(
+      {"energy", "", "kinetic, elastic and gravitational energy of each body, each frame, in profile.json"}, false);
+  output.passes = table->words<PicturePass>(
+      {"passes", "", "pictures in numbers beside those of the film, for compositors: passes/NAME/NNNNNN.exr"});
+  std::ranges::sort(output.passes);
+  const auto [rest, end] = std::ranges::unique(output.passes);
+  output.passes.erase(rest, end);
+}
+
+}  // namespace
+
+SceneDef read_scene(Config& config) {
+  SceneDef scene;
+  scene.assets = config.assets();
+  scene.name = std::filesystem::path(config.name()).stem().string();
+  const ConfigTable root = config.root();
+  (void)root.integer({"version", "", "of this format"}, 1, Range::between(1, 1));
+  read_film(root, scene);
+  GivenNames bodies("bodies"), colliders("colliders");
+  read_bodies(config, root, scene, bodies);
+  read_colliders(root, scene, colliders);
+  if (scene.bodies.empty()) root.complain("a scene needs at least one [[body]]");
+  check_attached(scene, config, bodies.all(), colliders.all());
+  read_view(root, bodies.all(), colliders.all(), scene);
   scene.look = read_look(root, scene.look);
   scene.field = read_field(root);
   scene.text = read_text(root);
-  if (const auto output = root.table({"output", "", "the pictures"})) {
-    scene.output.width = output->integer({"width", "pixels", "even, for the film's encoder"}, scene.output.width,
-                                         Range::between(16, 8192));
-    scene.output.height = output->integer({"height", "pixels", "even, for the film's encoder"}, scene.output.height,
-                                          Range::between(16, 8192));
-    read_size(*output, scene.output);
-    if (scene.output.width % 2 != 0) output->complain("width", "width: must be even");
-    if (scene.output.height % 2 != 0) output->complain("height", "height: must be even");
-    scene.output.samples = output->integer({"samples", "", "antialiasing samples a pixel: 1, 2, 4 or 8"},
-                                           scene.output.samples, Range::between(1, 8));
-    if ((scene.output.samples & (scene.output.samples - 1)) != 0)
-      output->complain("samples", "samples: must be 1, 2, 4 or 8");
-    scene.output.blur_samples = output->integer({"blur_samples", "",
-                                                 "pictures of which one is the mean where camera.shutter or aperture "
-                                                 "blur it; 0: 16 to 128, as the blur asks for"},
-                                                scene.output.blur_samples, Range::between(0, 8192));
-    scene.output.energy = output->boolean(
-        {"energy", "", "kinetic, elastic and gravitational energy of each body, each frame, in profile.json"}, false);
-    scene.output.passes = output->words<PicturePass>(
-        {"passes", "", "pictures in numbers beside those of the film, for compositors: passes/NAME/NNNNNN.exr"});
-    std::ranges::sort(scene.output.passes);
-    const auto [rest, end] = std::ranges::unique(scene.output.passes);
-    scene.output.passes.erase(rest, end);
-  }
+  read_output(root, scene.output);
   scene.sweep_points = read_sweep(root).points();
   return scene;
 }

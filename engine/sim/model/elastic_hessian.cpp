@@ -53,46 +53,56 @@ void element_matrices(const Model& model, Threads* threads, const Positions& x, 
   });
 }
 
-ElasticHessian::ElasticHessian(const Model& model) {
-  std::vector<std::pair<std::int32_t, std::int32_t>> entries;  // column, row
-  for (int v = 0; v < model.free; ++v) entries.emplace_back(v, v);
+namespace {
+
+// Returns the pairs of free vertices that share a block of the lower triangle: a vertex with itself, and vertices that
+// an element, a bend or a triangle of the surface joins. Sorted by the first, which is the smaller one.
+std::vector<std::pair<std::int32_t, std::int32_t>> coupled_vertices(const Model& model) {
+  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+  const auto add = [&](std::int32_t column, std::int32_t row) {
+    if (row > column && row < model.free) pairs.emplace_back(column, row);
+  };
+  for (int v = 0; v < model.free; ++v) pairs.emplace_back(v, v);
   for_each_element(model, [&](const ElementView& element) {
     const int corners = corners_of(element.kind);
     for (int a = 0; a < corners; ++a) {
-      for (int b = 0; b < corners; ++b) {
-        const std::int32_t row = element.corner[a], column = element.corner[b];
-        if (row > column && row < model.free) entries.emplace_back(column, row);
-      }
+      for (int b = 0; b < corners; ++b) add(element.corner[b], element.corner[a]);
     }
   });
   for (int v = 0; v < model.free && !model.bending.begin.empty(); ++v) {
-    for (std::int32_t k = model.bending.begin[v]; k < model.bending.begin[v + 1]; ++k) {
-      if (model.bending.column[k] > v && model.bending.column[k] < model.free)
-        entries.emplace_back(v, model.bending.column[k]);
-    }
+    for (std::int32_t k = model.bending.begin[v]; k < model.bending.begin[v + 1]; ++k) add(v, model.bending.column[k]);
   }
   // Contact couples the vertices of a triangle, which springs need not do.
   for (Eigen::Index t = 0; t < model.surface.rows(); ++t) {
     for (const std::int32_t row : model.surface.row(t)) {
-      for (const std::int32_t column : model.surface.row(t)) {
-        if (row > column && row < model.free) entries.emplace_back(column, row);
-      }
+      for (const std::int32_t column : model.surface.row(t)) add(column, row);
     }
   }
-  std::sort(entries.begin(), entries.end());
-  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
+}  // namespace
+
+ElasticHessian::ElasticHessian(const Model& model) {
   block_begin_.assign(model.free + 1, 0);
-  for (const auto& [column, row] : entries) {
+  for (const auto& [column, row] : coupled_vertices(model)) {
     ++block_begin_[column + 1];
     block_row_.push_back(row);
   }
   for (int v = 0; v < model.free; ++v) block_begin_[v + 1] += block_begin_[v];
+  make_pattern(model.free);
+  find_places(model);
+}
 
-  matrix_.resize(3 * model.free, 3 * model.free);
-  matrix_.resizeNonZeros(static_cast<Eigen::Index>(9 * entries.size()));
+void ElasticHessian::make_pattern(int vertices) {
+  const std::size_t numbers = 9 * block_row_.size();
+  matrix_.resize(3 * vertices, 3 * vertices);
+  matrix_.resizeNonZeros(static_cast<Eigen::Index>(numbers));
   int* outer = matrix_.outerIndexPtr();
   int* inner = matrix_.innerIndexPtr();
-  for (int v = 0; v < model.free; ++v) {
+  for (int v = 0; v < vertices; ++v) {
     const int rows = block_begin_[v + 1] - block_begin_[v];
     for (int c = 0; c < 3; ++c) {
       const int begin = 9 * block_begin_[v] + 3 * c * rows;
@@ -102,10 +112,11 @@ ElasticHessian::ElasticHessian(const Model& model) {
       }
     }
   }
-  outer[3 * model.free] = static_cast<int>(9 * entries.size());
+  outer[3 * vertices] = static_cast<int>(numbers);
+}
 
-  for (std::size_t c = 0; c < model.chunks.size(); ++c) {
-    const Model::ChunkRange& range = model.chunks[c];
+void ElasticHessian::find_places(const Model& model) {
+  for (const Model::ChunkRange& range : model.chunks) {
     first_place_.push_back(places_.size());
     places_.resize(places_.size() + std::size_t(range.blocks) * block_width * corner_pairs(corners_of(range.kind)),
                    Place{0, 0, -1, false});

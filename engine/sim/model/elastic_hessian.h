@@ -39,7 +39,12 @@ class ElasticHessian {
   void shift(double amount);
 
  private:
-  double* block(std::int32_t row, std::int32_t column);  // 3 x 3 by columns of stride_[column]
+  // Makes the matrix of so many free vertices, whose blocks are known, without its numbers.
+  void make_pattern(int vertices);
+  // Finds where the blocks of each element lie in the matrix.
+  void find_places(const Model& model);
+  // Returns the first number of a 3 x 3 block, whose columns lie one column of the matrix apart.
+  double* block(std::int32_t row, std::int32_t column);
 
   Eigen::SparseMatrix<double> matrix_;
   std::vector<std::int32_t> block_begin_, block_row_;  // by block column
