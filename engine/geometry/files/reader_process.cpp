@@ -27,7 +27,7 @@ class Child {
  public:
   // The child is started by posix_spawn, because a fork would copy a process with threads and a GL context only in
   // part.
-  Child(const std::filesystem::path& program, const std::filesystem::path& file) {
+  Child(const std::filesystem::path& program, const std::string& mode, const std::filesystem::path& file) {
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) refuse_start(program, file, errno);
     output_ = ends[0];
@@ -41,8 +41,8 @@ class Child {
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-    std::string first = program.string(), second = file.string();
-    char* arguments[] = {first.data(), second.data(), nullptr};
+    std::string words[] = {program.string(), mode.empty() ? file.string() : mode, file.string()};
+    char* arguments[] = {words[0].data(), words[1].data(), mode.empty() ? nullptr : words[2].data(), nullptr};
     const int error = ::posix_spawn(&id_, arguments[0], &actions, &attributes, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
     posix_spawnattr_destroy(&attributes);
@@ -102,12 +102,12 @@ void check_status(int status, const std::string& name) {
 }  // namespace
 
 std::string run_reader(const std::filesystem::path& program, const std::filesystem::path& file,
-                       const ReaderLimits& limits) {
+                       const ReaderLimits& limits, const std::string& mode) {
   const std::string name = file.string(),
                     too_long = fmt::format("takes too long to read: more than {:.3g} s", limits.seconds);
   const Clock::time_point deadline =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits.seconds));
-  Child child(program, file);
+  Child child(program, mode, file);
   std::string bytes;
   std::vector<char> buffer(1 << 16);
   for (;;) {

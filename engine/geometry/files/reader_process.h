@@ -13,9 +13,10 @@ struct ReaderLimits {
   std::size_t bytes = std::size_t(1) << 30;  // of output
 };
 
-// Returns what `program file` writes to its standard output. The child has ended when this returns or throws. Throws
-// InputError about `file` when the program cannot be run, crashed, failed, took too long or wrote too much.
+// Returns what `program file`, or `program mode file` where there is a mode, writes to its standard output. The child
+// has ended when this returns or throws. Throws InputError about `file` when the program cannot be run, crashed,
+// failed, took too long or wrote too much.
 std::string run_reader(const std::filesystem::path& program, const std::filesystem::path& file,
-                       const ReaderLimits& limits = {});
+                       const ReaderLimits& limits = {}, const std::string& mode = "");
 
 }  // namespace supple

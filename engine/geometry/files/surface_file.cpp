@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::uintmax_t largest_file = 1u << 30;
 
-void check_file(const std::filesystem::path& path) {
+// Refuses what is no file, or one that cannot be opened, is empty or too large.
+void check_plain_file(const std::filesystem::path& path) {
   std::error_code error;
   const std::string name = path.string();
   if (!std::filesystem::exists(path, error)) throw InputError(name, "no such file");
@@ -28,13 +29,18 @@ void check_file(const std::filesystem::path& path) {
   if (error) throw InputError(name, "cannot be read");
   if (size == 0) throw InputError(name, "is empty");
   if (size > largest_file) throw InputError(name, "is larger than 1 GiB");
+  if (!std::ifstream(path, std::ios::binary)) throw InputError(name, "cannot be opened");
+}
+
+void check_file(const std::filesystem::path& path) {
+  check_plain_file(path);
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(name, "cannot be opened");
   std::string begin(most_header_bytes, '\0');
   file.read(begin.data(), std::streamsize(begin.size()));
   begin.resize(std::size_t(file.gcount()));
-  const std::string wrong = announced_too_much(begin, size);
-  if (!wrong.empty()) throw InputError(name, wrong);
+  std::error_code error;
+  const std::string wrong = announced_too_much(begin, std::filesystem::file_size(path, error));
+  if (!wrong.empty()) throw InputError(path.string(), wrong);
 }
 
 // Reads values one by one from the front of the reader's bytes.
@@ -154,6 +160,15 @@ std::filesystem::path surface_reader_program() {
 ColoredSurface read_colored_surface(const std::filesystem::path& path) {
   check_file(path);
   return decode(run_reader(surface_reader_program(), path), path.string());
+}
+
+Texture read_picture(const std::filesystem::path& path) {
+  check_plain_file(path);
+  const std::string name = path.string();
+  const ColoredSurface read =
+      decode(run_reader(surface_reader_program(), path, {}, surface_stream::picture_mode), name);
+  if (!read.textures || read.textures->size() != 1) throw InputError(name, "is broken: its reader wrote no picture");
+  return read.textures->front();
 }
 
 TriMesh read_closed_surface(const std::filesystem::path& path, std::vector<std::string>* notes) {

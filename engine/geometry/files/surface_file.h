@@ -27,6 +27,10 @@ TriMesh read_closed_surface(const std::filesystem::path& path, std::vector<std::
 SolidSurface read_solid_surface(const std::filesystem::path& path, const SurfaceOptions& options,
                                 std::vector<std::string>* notes);
 
+// Reads a picture (PNG, JPEG, TGA, BMP) as textures are read, with rows from the top; its transparency is not kept.
+// Throws InputError when there is no such file, and when it is damaged, too large or no such picture.
+Texture read_picture(const std::filesystem::path& path);
+
 // Returns where the reading program is: beside the running program, where an installation puts it, or where the build
 // put it (for programs in other folders).
 std::filesystem::path surface_reader_program();

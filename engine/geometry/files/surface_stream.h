@@ -1,5 +1,5 @@
-// Defines what supple-read-surface writes: either `refused`, a Place and a reason of one line, or `accepted` and, all
-// with the bytes that they have in memory,
+// Defines what supple-read-surface writes of a surface, or of a picture (then all but the one texture is missing):
+// either `refused`, a Place and a reason of one line, or `accepted` and, all with the bytes that they have in memory,
 //   Counts, the positions (3 doubles a vertex), the indices (3 int32 a triangle), the colours (a SurfaceColor a
 //   vertex), the textures (TextureHead, name, 3 bytes a pixel), the texture coordinates (2 floats a vertex), the parts
 //   (an int32 a vertex), and as text the remarks, what was found, and the names: a line for each part, in which names
@@ -18,6 +18,8 @@ inline constexpr std::int64_t most_textures = 64;
 inline constexpr std::int64_t most_pixels = 1 << 26;  // of all textures together
 inline constexpr std::int64_t most_text = 1 << 16;    // bytes of the remarks, and of what was found
 inline constexpr std::int64_t most_names = 1 << 24;   // bytes of the names of parts
+
+inline constexpr char picture_mode[] = "--picture";  // an argument before the file: it is a picture
 
 struct Place {
   std::int32_t line = 0, column = 0;  // 0: unknown

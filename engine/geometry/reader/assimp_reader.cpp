@@ -11,6 +11,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -19,11 +20,13 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/read_file.h"
 #include "geometry/files/surface_stream.h"
 #include "geometry/reader/assimp_colors.h"
 #include "geometry/reader/assimp_files.h"
 #include "geometry/reader/assimp_parts.h"
 #include "geometry/reader/checked_surface.h"
+#include "geometry/reader/texture_reader.h"
 
 namespace {
 
@@ -208,16 +211,35 @@ int read(const char* path) {
   return std::fflush(stdout) == 0 ? 0 : 1;
 }
 
+// Reads a picture and writes it as the texture of a surface that has nothing else.
+int read_picture(const char* path) {
+  constexpr std::uintmax_t largest = 1u << 28;
+  const std::string bytes = supple::read_file(path, largest);
+  allow_seconds(10);
+  supple::ReadTexture read =
+      supple::read_texture(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), stream::most_pixels);
+  if (!read.refusal.empty()) return refuse(read.refusal);
+  if (read.damaged) return refuse("is damaged: parts of it cannot be read");
+  stream::Counts counts;
+  counts.textures = 1;
+  write(stream::accepted, sizeof stream::accepted);
+  write(&counts, 1);
+  write_textures({std::move(read.texture)});
+  return std::fflush(stdout) == 0 ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count != 2) {
-    std::fputs("usage: supple-read-surface FILE\n", stderr);
+  const bool is_picture = count == 3 && std::strcmp(arguments[1], stream::picture_mode) == 0;
+  if (count != 2 && !is_picture) {
+    std::fputs("usage: supple-read-surface [--picture] FILE\n", stderr);
     return 2;
   }
-  limit_this_process(arguments[1]);
+  const char* const file = arguments[count - 1];
+  limit_this_process(file);
   try {
-    return read(arguments[1]);
+    return is_picture ? read_picture(file) : read(file);
   } catch (const supple::InputError& error) {
     const supple::Problem& problem = error.problems().front();
     return refuse(problem.message, {problem.place.line, problem.place.column});

@@ -32,6 +32,12 @@ std::vector<std::array<std::int32_t, 2>> file_seams(const TriMesh& surface, cons
 // Returns the texture coordinates at a place; not a number where the file has none.
 Eigen::Vector2d texture_place(const RemeshedPlace& place, const ColoredSurface& file);
 
+// Holds the texture coordinates of the corners of triangles, by triangle.
+using CornerPlaces = std::vector<std::array<Eigen::Vector2d, 3>>;
+
+// Returns the texture coordinates of triangles by where their corners come from; null where the file has none.
+std::shared_ptr<const CornerPlaces> places_on(const FileCorners& corners, const ColoredSurface& file);
+
 // Returns the parts of triangles by where their corners come from; null where no part of the file has a name.
 std::shared_ptr<const SurfaceParts> parts_on(const FileCorners& corners, const ColoredSurface& file);
 

@@ -109,6 +109,19 @@ class FileTriangles {
     return result;
   }
 
+  // Returns the places of a triangle's corners in the triangles of the file; that of the first one where none is near.
+  std::array<RemeshedPlace, 3> places_of(const TriMesh& surface, Eigen::Index triangle) {
+    Eigen::Index source = by_place_.find(surface, triangle);
+    if (source < 0) source = std::max<Eigen::Index>(0, nearest_to(surface, triangle));
+    const Vec3 a = corner(file_.mesh, source, 0), b = corner(file_.mesh, source, 1), c = corner(file_.mesh, source, 2);
+    std::array<RemeshedPlace, 3> places;
+    for (int k = 0; k < 3; ++k)
+      places[std::size_t(k)] = {
+          static_cast<std::int32_t>(source),
+          weights_in_triangle(closest_in_triangle(corner(surface, triangle, k), a, b, c), a, b, c)};
+    return places;
+  }
+
   // Returns the part of a triangle; the first one where no triangle is near.
   std::int32_t part_of(const TriMesh& surface, Eigen::Index triangle) {
     Eigen::Index source = by_place_.find(surface, triangle);
@@ -293,6 +306,24 @@ std::shared_ptr<const SurfaceParts> parts_on(const TriMesh& surface, const Color
   FileTriangles triangles(file);
   for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) parts->of.push_back(triangles.part_of(surface, t));
   return parts;
+}
+
+std::shared_ptr<const CornerPlaces> places_on(const TriMesh& surface, const ColoredSurface& file) {
+  if (file.places.empty()) return nullptr;
+  FileCorners corners;
+  FileTriangles triangles(file);
+  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) corners.push_back(triangles.places_of(surface, t));
+  return places_on(corners, file);
+}
+
+double brightness_at(const Texture& picture, const Eigen::Vector2d& place) {
+  const auto number = [](double at, int size) {
+    const double inside = at >= 0 && at <= 1 ? at : at - std::floor(at);
+    return std::min(size - 1, int(inside * size));
+  };
+  const int x = number(place.x(), picture.width), y = picture.height - 1 - number(place.y(), picture.height);
+  const std::uint8_t* rgb = &picture.rgb[3 * (std::size_t(y) * std::size_t(picture.width) + std::size_t(x))];
+  return (0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]) / 255;
 }
 
 Vec3 srgb_at(const SurfaceColors& colors, Eigen::Index triangle, const Vec3& weights) {

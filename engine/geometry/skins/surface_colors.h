@@ -33,8 +33,16 @@ std::shared_ptr<const SurfaceColors> colors_on(const FileCorners& corners, const
 // file has a name.
 std::shared_ptr<const SurfaceParts> parts_on(const TriMesh& surface, const ColoredSurface& file);
 
+// Returns the texture coordinates of a surface's corners, which find theirs as colors_on finds colours; null where the
+// file has none.
+std::shared_ptr<const CornerPlaces> places_on(const TriMesh& surface, const ColoredSurface& file);
+
 // Returns the colour at a place of a triangle in sRGB, each channel 0 to 1. weights: barycentric.
 Vec3 srgb_at(const SurfaceColors& colors, Eigen::Index triangle, const Vec3& weights);
+
+// Returns how bright the pixel of a picture is that lies at a place of it, 0 black to 1 white: the luma of BT.709, of
+// the sRGB numbers. Beyond its edges it repeats; both edges belong to it.
+double brightness_at(const Texture& picture, const Eigen::Vector2d& place);
 
 // Gives a skin that skin_of_surface has made of these triangles the colours of their corners. Vertices at which colours
 // meet are split; those that were one keep one normal (Skin::smooth). Returns the vertex that each was before.

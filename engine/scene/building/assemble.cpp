@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/hash.h"
 #include "base/text.h"
 #include "scene/building/cloth_cut.h"
 #include "scene/building/overlaps.h"
@@ -149,6 +150,8 @@ void add_handle(Body& body, const HandleDef& def, std::vector<Problem>& problems
         at(def.select.place, fmt::format("with handle '{}' every vertex of body '{}' is held: nothing is left to move",
                                          def.name, body.def.name)));
   }
+  if (def.select.picture)
+    body.files.push_back({def.select.mask, hash_bytes(def.select.picture->rgb.data(), def.select.picture->rgb.size())});
   KeyedMotion motion{Vec3::Zero(), def.ease, def.keys};
   Bounds box;
   for (const std::int32_t v : handle.vertices) box.include(mesh.rest.row(v).transpose());

@@ -74,9 +74,12 @@ struct Body {
   std::shared_ptr<const SurfaceColors> colors;
   std::shared_ptr<const SurfaceColors> file_colors;  // the same, also where they are not drawn; null: the file has none
   std::shared_ptr<const SurfaceParts> parts;         // of the same triangles; null: unnamed, or nothing asks for them
-  Shape shape;                                       // the shape of a body made from one, in the file's frame
-  Positions unplaced;                                // the rest positions of the mesh in the file's frame
-  std::uint64_t seed = 0;                            // of its random start
+  // By the same triangles and their corners: texture coordinates; null: the file has none, or nothing asks for them.
+  // Not numbers where a part of the file has none.
+  std::shared_ptr<const std::vector<std::array<Eigen::Vector2d, 3>>> places;
+  Shape shape;                                 // the shape of a body made from one, in the file's frame
+  Positions unplaced;                          // the rest positions of the mesh in the file's frame
+  std::uint64_t seed = 0;                      // of its random start
   std::vector<Overlap> overlaps;               // at the start; what the scene does about them is in its definition
   std::optional<EarlierState> from;            // nothing: the body starts as its definition says
   Vec3 start_move = Vec3(0, 0, 0);             // the move out of colliders that the body would start in [m]

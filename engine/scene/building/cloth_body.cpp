@@ -117,6 +117,7 @@ void keep_what_is_said(const BodyDef& def, const FileCloth& cloth, const Colored
   if (!cloth.corners.empty()) {
     body.file_colors = colors_on(cloth.corners, file);
     body.parts = parts_on(cloth.corners, file);
+    body.places = places_on(cloth.corners, file);
   }
   choose_colors(def, def.cloth->surface, body);
   if (def.cloth->cut == ClothCut::texture) body.flat = flat_cut(cloth.surface, cloth.corners, file, def, body.notes);

@@ -132,6 +132,22 @@ std::vector<std::int32_t> vertices_of_color(const Selection& s, const Body& body
   return result;
 }
 
+// Returns how bright a mask is at a place; below 0 where the place has no texture coordinates.
+double brightness(const Selection& s, const Body& body, const ToldPlace& place) {
+  const auto& corners = (*body.places)[std::size_t(place.triangle)];
+  const Eigen::Vector2d at =
+      place.weights[0] * corners[0] + place.weights[1] * corners[1] + place.weights[2] * corners[2];
+  return at.allFinite() ? brightness_at(*s.picture, at) : -1;
+}
+
+std::vector<std::int32_t> vertices_of_mask(const Selection& s, const Body& body) {
+  std::vector<std::int32_t> result;
+  if (!body.places || !s.picture) return result;
+  for (const ToldPlace& place : told_places(body))
+    if (brightness(s, body, place) > s.above) result.push_back(place.vertex);
+  return result;
+}
+
 std::vector<std::int32_t> vertices_of_kind(const Selection& s, const Body& body) {
   using Kind = Selection::Kind;
   const Bounds box = bounds_of(body.unplaced);
@@ -141,6 +157,7 @@ std::vector<std::int32_t> vertices_of_kind(const Selection& s, const Body& body)
     case Kind::nearest: return nearest_vertices(s, box, body.unplaced);
     case Kind::group: return vertices_of_group(s, body);
     case Kind::color: return vertices_of_color(s, body);
+    case Kind::mask: return vertices_of_mask(s, body);
     case Kind::box:
     case Kind::sphere:
     case Kind::plane: break;
@@ -170,6 +187,15 @@ std::string color_reason(const Selection& s, const Body& body) {
                      std::ceil(100 * off(s, body, *nearest)) / 100);
 }
 
+std::string mask_reason(const Selection& s, const Body& body) {
+  double brightest = -1;
+  if (body.places)
+    for (const ToldPlace& place : told_places(body)) brightest = std::max(brightest, brightness(s, body, place));
+  if (brightest < 0) return ": it is not made of a surface's file that has texture coordinates, on which a mask lies";
+  return fmt::format(": at its texture coordinates '{}' is {:.2f} bright at most; above = {:g} asks for more",
+                     s.mask.filename().string(), brightest, s.above);
+}
+
 }  // namespace
 
 std::string empty_reason(const Selection& s, const Body& body) {
@@ -181,6 +207,7 @@ std::string empty_reason(const Selection& s, const Body& body) {
   if (s.kind == Selection::Kind::region) return fmt::format(": there is no region '{}'", s.region);
   if (s.kind == Selection::Kind::group) return group_reason(s, body);
   if (s.kind == Selection::Kind::color) return color_reason(s, body);
+  if (s.kind == Selection::Kind::mask) return mask_reason(s, body);
   return "; boxes, spheres and planes are relative to the rest bounding box (0 to 1)";
 }
 

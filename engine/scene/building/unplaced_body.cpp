@@ -41,6 +41,7 @@ Body body_of_surface(const BodyDef& def, const SlowWork& work) {
   body.regions = Shape{}.regions;
   take(body, mesh_of_surface({solid, read.touching}, wanted_mesh(body, def), work));
   body.parts = read.parts[def.piece];
+  body.places = read.places[def.piece];
   body.file_colors = read.colors[def.piece];
   choose_colors(def, def.surface, body);
   return body;
@@ -86,8 +87,8 @@ std::string key_of(const BodyDef& def) {
                                       : fmt::format("{}{}#{}{}", def.shape.string(), def.surface.string(), def.vertices,
                                                     def.surface_options.text());
   if (!def.surface.empty())
-    key += fmt::format(" {} {} {} {} {}", name_of(def.pieces), def.piece, name_of(def.colors), def.color.has_value(),
-                       def.read_surface->parts[def.piece] != nullptr);
+    key += fmt::format(" {} {} {} {} {} {}", name_of(def.pieces), def.piece, name_of(def.colors), def.color.has_value(),
+                       def.read_surface->parts[def.piece] != nullptr, def.read_surface->places[def.piece] != nullptr);
   return key;
 }
 

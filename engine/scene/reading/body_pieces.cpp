@@ -30,10 +30,13 @@ std::vector<std::string> text_of_pieces(const SurfacePieces& found, std::size_t 
   return {text};
 }
 
-bool asks_for_names(const BodyDef& body) {
-  return std::ranges::any_of(body.handles,
-                             [](const HandleDef& handle) { return handle.select.kind == Selection::Kind::group; });
+bool any_handle_selects(const BodyDef& body, Selection::Kind kind) {
+  return std::ranges::any_of(body.handles, [&](const HandleDef& handle) { return handle.select.kind == kind; });
 }
+
+bool asks_for_names(const BodyDef& body) { return any_handle_selects(body, Selection::Kind::group); }
+
+bool asks_for_places(const BodyDef& body) { return any_handle_selects(body, Selection::Kind::mask); }
 
 }  // namespace
 
@@ -69,6 +72,7 @@ BodySurface read_body_surface(const BodyDef& body) {
     result.sources.push_back(source_of(body.surface, piece));
     result.colors.push_back(colors_on(piece.skin(), file));
     result.parts.push_back(asks_for_names(body) ? parts_on(piece.skin(), file) : nullptr);
+    result.places.push_back(asks_for_places(body) ? places_on(piece.skin(), file) : nullptr);
     result.whole.middleRows(row, piece.boundary.points.rows()) = piece.boundary.points;
     row += piece.boundary.points.rows();
   }
@@ -80,8 +84,9 @@ BodySurface read_body_surface(const BodyDef& body) {
 std::vector<BodyDef> bodies_of(const ConfigTable& table, BodyDef body) {
   if (body.surface.empty()) return {std::move(body)};
   auto& known = known_surfaces(table.config())->of_bodies;
-  const std::string name = fmt::format("{}{} {}{}", body.surface.string(), body.surface_options.text(),
-                                       name_of(body.pieces), asks_for_names(body) ? " with names" : "");
+  const std::string name =
+      fmt::format("{}{} {}{}{}", body.surface.string(), body.surface_options.text(), name_of(body.pieces),
+                  asks_for_names(body) ? " with names" : "", asks_for_places(body) ? " with places" : "");
   try {
     std::shared_ptr<const BodySurface>& read = known[name];
     if (!read) read = std::make_shared<BodySurface>(read_body_surface(body));

@@ -16,6 +16,7 @@ struct BodySurface {
   std::vector<double> volumes;       // of each piece [m^3]
   std::vector<std::shared_ptr<const SurfaceColors>> colors;  // of each piece's skin; null where the file has none
   std::vector<std::shared_ptr<const SurfaceParts>> parts;    // the same, where a handle asks for names; else null
+  std::vector<std::shared_ptr<const CornerPlaces>> places;   // the same, where a handle has a mask; else null
   std::vector<std::vector<std::string>> names;               // which each part of the file has
   std::string found;                                         // which colours the file has, in words; empty: none
   std::vector<std::string> notes;

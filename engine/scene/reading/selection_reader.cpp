@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "base/text.h"
+#include "geometry/files/surface_file.h"
 
 namespace supple {
 namespace {
@@ -83,21 +84,41 @@ int read_named(const ConfigTable& table, Selection& s) {
   return given;
 }
 
+// Does the same for a picture over the texture coordinates.
+int read_mask(const ConfigTable& table, Selection& s) {
+  s.mask = table.file(key_of(Kind::mask,
+                             "a picture (PNG, JPEG, TGA, BMP): vertices whose texture coordinates in the surface's "
+                             "file fall on a pixel of it that is brighter than above"));
+  s.above = table.number({"above", "", "of a mask: how bright a pixel must be, from 0, black, to 1, white"}, s.above,
+                         Range::between(0, 1));
+  if (table.has("above") && !gives(table, Kind::mask)) table.complain("above", "above: of a mask; there is none here");
+  if (!gives(table, Kind::mask)) return 0;
+  s.kind = Kind::mask;
+  if (s.mask.empty()) return 1;
+  try {
+    s.picture = std::make_shared<const Texture>(read_picture(s.mask));
+  } catch (const InputError& error) {
+    table.complain("mask",
+                   fmt::format("mask = '{}': {}", s.mask.filename().string(), error.problems().front().message));
+  }
+  return 1;
+}
+
 }  // namespace
 
 Selection read_selection(const ConfigTable& handle) {
   Selection s;
   s.place = handle.place("select");
-  const auto table = handle.table(
-      {"select", "",
-       "which vertices, by exactly one of region, box, sphere, plane, vertices, nearest, group, color, or by border"},
-      "required");
+  const auto table = handle.table({"select", "",
+                                   "which vertices, by exactly one of region, box, sphere, plane, vertices, nearest, "
+                                   "group, color, mask, or by border"},
+                                  "required");
   if (!table) {
     if (!handle.has("select"))
       handle.complain("'select' is missing: such as select = { box = [[0, 0, 0], [1, 0.1, 1]] }");
     return s;
   }
-  const int given = read_named(*table, s) + read_placed(*table, s);
+  const int given = read_named(*table, s) + read_mask(*table, s) + read_placed(*table, s);
   s.border =
       table->boolean({"border", "", "true: only vertices on the open border of a cloth; alone: all of them"}, false);
   if (given == 0) s.kind = Kind::box;  // the whole box
