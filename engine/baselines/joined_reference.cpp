@@ -75,7 +75,7 @@ class Descent {
   // The estimates are those before the last iteration.
   bool is_solved() {
     return error_of(w_.report.remaining_estimate, reached_ + w_.report.decrease) < enough_energy &&
-           motion_estimate(model_, inputs_, q_, w_) < enough_motion;
+           motion_ahead(model_, inputs_, q_, w_) < enough_motion;
   }
 
   void keep_lowest() {

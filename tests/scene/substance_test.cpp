@@ -141,6 +141,19 @@ TEST(Substances, SoftenedFitsAndBodiesThatStayFlatAreWarnedOf) {
   EXPECT_EQ(warning("material = { model = \"corotated\", mu = 1e4 }\nstart = { flatten = \"line\" }\n"), "nothing");
 }
 
+TEST(Substances, WhatIsLooseNearRestAndFirmBeyondIsWarnedOf) {
+  const auto is_loose = [](const std::string& material) {
+    const SceneDef scene = scene_of("gravity = [0, 0, 0]\n" + box_body("material = { " + material + " }\n"));
+    return std::ranges::any_of(warnings(scene, assemble(scene)), [](const Warning& one) {
+      return one.kind == WarningKind::material && one.problem.message.find("loose near rest") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(is_loose("model = \"polynomial\", mu = 1e9"));
+  EXPECT_TRUE(is_loose("model = \"strain-limiting\", mu_1 = 1e9, low_1 = 0.95, high_1 = 1.05"));
+  EXPECT_FALSE(is_loose("model = \"polynomial\", mu = 1e3"));
+  EXPECT_FALSE(is_loose("model = \"neo-hookean\", young = 1e9, poisson = 0.3"));
+}
+
 TEST(Substances, UntanglingIsAdvisedWhereABodyStartsFoldedAndMayStaySo) {
   const auto advice = [](const std::string& text) {
     return untangle_advice(assemble(scene_of("gravity = [0, 0, 0]\n" + box_body(text))).front());

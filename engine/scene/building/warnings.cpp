@@ -17,6 +17,7 @@
 #include "scene/definition/field_def.h"
 #include "scene/definition/meeting.h"
 #include "scene/definition/scene_def.h"
+#include "sim/coarse/rest_moduli.h"
 #include "sim/elements/tetrahedron.h"
 #include "sim/measures/measures.h"
 
@@ -110,6 +111,22 @@ void warn_of_substance(const Body& body, std::vector<Warning>& list) {
                       fmt::format("body '{}' starts as a line or a point, and its material has no force across "
                                   "those: it will not recover",
                                   body.def.name)));
+  }
+}
+
+// Warns of a body that its directions take for far stiffer than it is near rest. Ten iterations hardly move what is
+// free there, and the estimates of errors do not see all of it: stiff cubes of such materials that land end steps with
+// all of their motion missing (docs/stability.md).
+void warn_of_looseness(const Body& body, std::vector<Warning>& list) {
+  constexpr double firm = 30;
+  if (body.def.cloth || crossing_number(body) <= firm) return;
+  for (const Material& material : body.description.materials) {
+    if (!is_loose_at_rest(material, system_stiffness(material, body.def.solver.fit))) continue;
+    list.push_back(at(WarningKind::material, body.def.place,
+                      fmt::format("body '{}' is firm for its time step, but its material ({}) is loose near rest: the "
+                                  "solver works with the stiffness of larger strains, so that steps may end far from "
+                                  "solved, and not all are named; more substeps make it less",
+                                  body.def.name, name_of(material))));
   }
 }
 
@@ -305,71 +322,85 @@ void warn_of_cut(const Body& body, std::vector<Warning>& list) {
                               : "the texture may be no cut of it")));
 }
 
+void warn_of_slivers(const Body& body, const MeshQuality& quality, std::vector<Warning>& list) {
+  if (body.def.cloth || quality.smallest_volume >= 1e-4) return;
+  list.push_back(at(WarningKind::slivers, body.def.place,
+                    fmt::format("body '{}' has slivers: its smallest element has {:.1e} of the mean volume, its "
+                                "smallest dihedral angle is {:.2g} degrees",
+                                body.def.name, quality.smallest_volume, quality.smallest_dihedral)));
+}
+
+// weight: of the body [N]; size: its diagonal [m].
+void warn_of_handles(const Body& body, double weight, double size, std::vector<Warning>& list) {
+  for (std::size_t i = 0; i < body.description.handles.size(); ++i) {
+    const Handle& handle = body.description.handles[i];
+    const HandleDef& def = body.def.handles[i];
+    if (def.grabs && !body.motions[i].at(def.from).isApprox(Eigen::Isometry3d::Identity(), 1e-6)) {
+      list.push_back(at(WarningKind::handle, def.select.place,
+                        fmt::format("handle '{}' of body '{}' has moved by its keys already when it grabs, at {:g} s: "
+                                    "its vertices jump",
+                                    handle.name, body.def.name, def.from)));
+    }
+    if (handle.stiffness <= 0 || def.grabs) continue;
+    const double sag = weight / (handle.stiffness * static_cast<double>(handle.vertices.size()));
+    if (sag <= 0.02 * size) continue;
+    list.push_back(at(WarningKind::handle, def.select.place,
+                      fmt::format("handle '{}' of body '{}' is soft for its load: the body's weight alone stretches "
+                                  "its springs by {:.2g} m ({:.0f} % of its size)",
+                                  handle.name, body.def.name, sag, 100 * sag / size)));
+  }
+}
+
+// Warns of a body that is too stiff for its solver to move as it should.
+void warn_of_stiffness(const SceneDef& scene, const Body& body, std::vector<Warning>& list) {
+  const double crossing = crossing_number(body);
+  const SolverSettings& solver = body.def.solver.settings;
+  constexpr double turns_with_one_level = 0.3;  // at 0.46, a ball of jelly loses a quarter of its roll
+  if (crossing > turns_with_one_level && solver.levels < 2 && !body.def.cloth) {
+    list.push_back(at(WarningKind::turning, body.def.place,
+                      fmt::format("body '{}' will turn less than it should, because it is stiff and its solver has one "
+                                  "level; solver.levels = 2 mends it",
+                                  body.def.name)));
+  }
+  if (std::string slow = damping_text(scene, body); !slow.empty())
+    list.push_back(at(WarningKind::turning, body.def.place, std::move(slow)));
+  if ((crossing > stiff_crossing || is_stiff_cloth(body)) && solver.iterations <= 10) {
+    list.push_back(at(WarningKind::stiffness, body.def.place,
+                      fmt::format("body '{}' is stiff for {} iterations a step; more solver.iterations or substeps "
+                                  "make its motion sharper",
+                                  body.def.name, solver.iterations)));
+  }
+}
+
+void warn_of_body(const SceneDef& scene, const Body& body, std::vector<Warning>& list) {
+  const std::size_t first = list.size();
+  const MeshQuality q = quality(body.description.mesh);
+  const Bounds box = bounds_of(body.description.mesh.rest);
+  const std::vector<double>& points = body.description.point_mass;
+  const double mass = body.description.density * q.volume + std::accumulate(points.begin(), points.end(), 0.0);
+  warn_of_slivers(body, q, list);
+  warn_of_handles(body, mass * scene.gravity.norm(), box.diagonal(), list);
+  warn_of_cut(body, list);
+  warn_of_stiffness(scene, body, list);
+  if (!body.overlaps.empty() && !body.from && body.def.start_inside != StartInside::push)
+    list.push_back(at(WarningKind::inside, body.def.place, overlap_text(body)));
+  warn_of_fall(scene, body, list);
+  warn_of_substance(body, list);
+  warn_of_looseness(body, list);
+  warn_of_weight(scene, body, box, list);
+  warn_of_size(scene, body, box, list);
+  warn_of_regions(body, list);
+  if (std::string thin = thinness_text(body); !thin.empty())
+    list.push_back(at(WarningKind::thin, body.def.place, std::move(thin)));
+  warn_of_delay(body, list);
+  for (std::size_t i = first; i < list.size(); ++i) list[i].meant = is_meant(body.def, *list[i].kind);
+}
+
 }  // namespace
 
 std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bodies) {
   std::vector<Warning> list;
-  for (const Body& body : bodies) {
-    const std::size_t first = list.size();  // of this body's warnings
-    const TetMesh& mesh = body.description.mesh;
-    const MeshQuality q = quality(mesh);
-    const Bounds box = bounds_of(mesh.rest);
-    if (!body.def.cloth && q.smallest_volume < 1e-4) {
-      list.push_back(at(WarningKind::slivers, body.def.place,
-                        fmt::format("body '{}' has slivers: its smallest element has {:.1e} of the "
-                                    "mean volume, its smallest dihedral angle is {:.2g} degrees",
-                                    body.def.name, q.smallest_volume, q.smallest_dihedral)));
-    }
-    const std::vector<double>& points = body.description.point_mass;
-    const double mass = body.description.density * q.volume + std::accumulate(points.begin(), points.end(), 0.0);
-    for (std::size_t i = 0; i < body.description.handles.size(); ++i) {
-      const Handle& handle = body.description.handles[i];
-      const HandleDef& def = body.def.handles[i];
-      if (def.grabs && !body.motions[i].at(def.from).isApprox(Eigen::Isometry3d::Identity(), 1e-6)) {
-        list.push_back(
-            at(WarningKind::handle, def.select.place,
-               fmt::format("handle '{}' of body '{}' has moved by its keys already when it grabs, at {:g} s: "
-                           "its vertices jump",
-                           handle.name, body.def.name, def.from)));
-      }
-      if (handle.stiffness <= 0 || def.grabs) continue;
-      const double sag = mass * scene.gravity.norm() / (handle.stiffness * static_cast<double>(handle.vertices.size()));
-      if (sag > 0.02 * box.diagonal()) {
-        list.push_back(at(WarningKind::handle, body.def.handles[i].select.place,
-                          fmt::format("handle '{}' of body '{}' is soft for its load: the body's weight alone "
-                                      "stretches its springs by {:.2g} m ({:.0f} % of its size)",
-                                      handle.name, body.def.name, sag, 100 * sag / box.diagonal())));
-      }
-    }
-    warn_of_cut(body, list);
-    const double crossing = crossing_number(body);
-    constexpr double turns_with_one_level = 0.3;  // at 0.46, a ball of jelly loses a quarter of its roll
-    if (crossing > turns_with_one_level && body.def.solver.settings.levels < 2 && !body.def.cloth) {
-      list.push_back(at(WarningKind::turning, body.def.place,
-                        fmt::format("body '{}' will turn less than it should, because it is stiff and its "
-                                    "solver has one level; solver.levels = 2 mends it",
-                                    body.def.name)));
-    }
-    if (std::string slow = damping_text(scene, body); !slow.empty())
-      list.push_back(at(WarningKind::turning, body.def.place, std::move(slow)));
-    if ((crossing > stiff_crossing || is_stiff_cloth(body)) && body.def.solver.settings.iterations <= 10) {
-      list.push_back(at(WarningKind::stiffness, body.def.place,
-                        fmt::format("body '{}' is stiff for {} iterations a step; more solver.iterations or "
-                                    "substeps make its motion sharper",
-                                    body.def.name, body.def.solver.settings.iterations)));
-    }
-    if (!body.overlaps.empty() && !body.from && body.def.start_inside != StartInside::push)
-      list.push_back(at(WarningKind::inside, body.def.place, overlap_text(body)));
-    warn_of_fall(scene, body, list);
-    warn_of_substance(body, list);
-    warn_of_weight(scene, body, box, list);
-    warn_of_size(scene, body, box, list);
-    warn_of_regions(body, list);
-    if (std::string thin = thinness_text(body); !thin.empty())
-      list.push_back(at(WarningKind::thin, body.def.place, std::move(thin)));
-    warn_of_delay(body, list);
-    for (std::size_t i = first; i < list.size(); ++i) list[i].meant = is_meant(body.def, *list[i].kind);
-  }
+  for (const Body& body : bodies) warn_of_body(scene, body, list);
   warn_of_shared_space(bodies, list);
   warn_of_fast_surfaces(scene, bodies, list);
   warn_of_followed(bodies, list);

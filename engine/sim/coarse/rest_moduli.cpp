@@ -18,6 +18,11 @@ RestModuli rest_moduli(const Material& material) {
       material);
 }
 
+bool is_loose_at_rest(const Material& material, const SystemStiffness& stiffness) {
+  constexpr double loose = 0.01;
+  return rest_moduli(material).mu < loose * stiffness.k;
+}
+
 Mat3 plane_moduli(const Membrane& membrane) {
   return std::visit(
       [](const auto& sheet) {

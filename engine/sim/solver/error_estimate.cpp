@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/coarse/rest_moduli.h"
 #include "sim/contact/contact.h"
 #include "sim/model/motion_error.h"
 #include "sim/solver/line_search.h"
@@ -92,19 +93,84 @@ double times_ahead(const StepReport& report) {
   return std::sqrt(std::max(1.0, report.remaining_estimate / report.decrement));
 }
 
+// Returns what the last direction promises to gain over the geometric mean of what the last five iterations gained, or
+// 0 where none of them gained anything.
+double promise_over_gains(const StepReport& report) {
+  constexpr int most = 5;
+  double logarithms = 0;
+  int count = 0;
+  for (auto it = report.records.rbegin(); it != report.records.rend() && count < most; ++it) {
+    if (it->decrease <= 0) continue;
+    logarithms += std::log(it->decrease);
+    ++count;
+  }
+  return count == 0 ? 0 : report.decrement / std::exp(logarithms / count);
+}
+
+bool has_loose_material(const Model& model) {
+  for (std::size_t r = 0; r < model.materials.size(); ++r) {
+    if (is_loose_at_rest(model.materials[r], model.stiffness[r])) return true;
+  }
+  return false;
+}
+
+// Returns the weight of the logarithm of the most that can be left in the estimate, beside that of the way ahead. A
+// search that converges promises about a tenth of what its last iterations gained, and its way ahead is the estimate.
+// One that goes on gaining as much as before has motions left which A takes for far stiffer than they are, and
+// directions hardly show those of a material that is loose at rest. The numbers are fitted to 5,600 steps of stiff
+// bodies (docs/lab/2026-11-28-estimates-that-go-on.md).
+double weight_of_most(const Model& model, const StepReport& report) {
+  constexpr double converging = 0.3, going_on = 0.6, most_weight = 0.4;
+  if (report.newton_iterations > 0) return 0;  // Newton's matrix knows what is soft
+  const double promise = promise_over_gains(report);
+  if (promise <= converging || !has_loose_material(model)) return 0;
+  return most_weight * std::min(1.0, (promise - converging) / (going_on - converging));
+}
+
+// Returns a way that is no shorter than what is left, where the energy is convex: then the Hessian of g resists no
+// motion less than inertia does, and the distance from the minimum is at most h^2/w |grad g| in the norm of the inverse
+// mass (Nesterov 2004, "Introductory lectures on convex optimization", theorem 2.1.9; n_free x 3) [m].
+const Positions& longest_way(const Model& model, OpenWorkspace& w) {
+  const double mobility = model.time_step * model.time_step / model.scheme.inertia;
+  for (int v = 0; v < model.free; ++v) w.scratch.row(v) = -mobility / model.mass[v] * w.current.gradient.row(v);
+  return w.scratch;
+}
+
+// Returns the estimate between that by the way ahead and the most that can be left.
+double between(double ahead, double most, double weight) {
+  return ahead > 0 && most > ahead ? ahead * std::pow(most / ahead, weight) : ahead;
+}
+
 }  // namespace
 
-double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
+double motion_ahead(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
   if (w.report.failed || w.report.decrement <= 0) return 0;
   return estimated_motion_error(model, q, w.y, w.current.x, way_ahead(model, inputs, w), times_ahead(w.report));
 }
 
+double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
+  const double ahead = motion_ahead(model, inputs, q, w);
+  const double weight = ahead > 0 ? weight_of_most(model, w.report) : 0;
+  if (weight == 0) return ahead;
+  return between(ahead, estimated_motion_error(model, q, w.y, w.current.x, longest_way(model, w), 1), weight);
+}
+
 void report_motion_estimates(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
   StepReport& report = w.report;
-  report.motion_estimate = motion_estimate(model, inputs, q, w);
   report.motion_estimates.clear();
-  if (model.parts.size() < 2 || report.motion_estimate == 0) return;
-  report.motion_estimates = estimated_motion_errors(model, q, w.y, w.current.x, w.trial.gradient, times_ahead(report));
+  if (model.parts.size() < 2) {
+    report.motion_estimate = motion_estimate(model, inputs, q, w);
+    return;
+  }
+  report.motion_estimate = motion_ahead(model, inputs, q, w);
+  if (report.motion_estimate == 0) return;
+  std::vector<double>& of_parts = report.motion_estimates;
+  of_parts = estimated_motion_errors(model, q, w.y, w.current.x, w.trial.gradient, times_ahead(report));
+  const double weight = weight_of_most(model, report);
+  if (weight == 0) return;
+  const std::vector<double> most = estimated_motion_errors(model, q, w.y, w.current.x, longest_way(model, w), 1);
+  for (std::size_t p = 0; p < of_parts.size(); ++p) of_parts[p] = between(of_parts[p], most[p], weight);
+  report.motion_estimate = *std::max_element(of_parts.begin(), of_parts.end());
 }
 
 bool is_near_enough(const Model& model, const StepInputs& inputs, const Positions* q, double above_start,

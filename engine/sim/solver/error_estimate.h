@@ -49,7 +49,12 @@ double error_at_end(const Model& model, const StepInputs& inputs, OpenWorkspace&
 // Estimates the error of motion (model/motion_error.h) of a step from q to the current iterate, where the direction
 // begins, from the length of that direction: it leads to the minimum of its quadratic model. On the first level alone
 // that model resists turning; the second adds what it misses. Returns 0 where the rule does not look beyond its last
-// iterate. Overwrites the trial iterate.
+// iterate. Leaves the way in the trial iterate's gradient.
+double motion_ahead(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& workspace);
+
+// Does the same, and where the iterations go on gaining as much as before and a material is loose at rest, takes more
+// than the way ahead: what is left then is mostly motion that directions hardly show. Overwrites the trial iterate and
+// the workspace's scratch.
 double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& workspace);
 
 // Writes these estimates to the report, for all of a step and for each part of a model of several.
