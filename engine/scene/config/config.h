@@ -243,10 +243,10 @@ class ConfigTable {
   ConfigTable(Config* config, const toml::table* table, std::string path, std::string generic);
   // Describes what a key may have.
   struct Allowed {
-    Allowed(std::string text) : text(std::move(text)) {}
-    Allowed(const char* text) : text(text) {}
-    Allowed(const Range& range) : text(range.text()), range(range) {}
-    Allowed(const Words& words) : text(word_list(words.allowed)), words(words.allowed) {}
+    Allowed(std::string in_words) : text(std::move(in_words)) {}
+    Allowed(const char* in_words) : text(in_words) {}
+    Allowed(const Range& values) : text(values.text()), range(values) {}
+    Allowed(const Words& list) : text(word_list(list.allowed)), words(list.allowed) {}
     std::string text;
     Range range = {};
     std::vector<std::string> words = {};

@@ -161,13 +161,13 @@ void open_table_of(Config& document, const std::string& path) {
 }
 
 // Reads the scene that the replay starts with, and the changes.
-void Script::Parts::read_replay(const std::filesystem::path& assets, const std::vector<std::string>& settings,
+void Script::Parts::read_replay(const std::filesystem::path& assets, const std::vector<std::string>& asked_for,
                                 std::optional<std::size_t> sweep_point) {
   scene_file = start_of_replay(*replay, assets, problems,
                                [this](Config& document, const std::string& path, const ConfigValue& value,
                                       const FilePlace& place) { put(document, path, value, place); });
   const ConfigTable root = replay->root();
-  for (const std::string& setting : settings) scene_file.set(setting, exclusive_keys());
+  for (const std::string& setting : asked_for) scene_file.set(setting, exclusive_keys());
   if (sweep_point) put_sweep_point(scene_file, *sweep_point);
   Config plain = scene_file.copy();
   start = read_scene(plain);
