@@ -28,11 +28,11 @@ struct World::Parts {
   bool has_stepped = false;                                // since the start, or the last state that was restored
   double saved_ms = 0;                                     // of the frame's steps
 
-  Parts(std::optional<Script> script, SceneDef at_start, std::vector<Body> bodies)
-      : script(std::move(script)),
+  Parts(std::optional<Script> played, SceneDef at_start, std::vector<Body> assembled)
+      : script(std::move(played)),
         start(std::move(at_start)),
         scene(start),
-        bodies(std::move(bodies)),
+        bodies(std::move(assembled)),
         colliders(collision_set(scene)) {}
 
   // In the frame of a change, positions are interpolated over the substeps, from the values in `earlier` to the new
@@ -50,17 +50,17 @@ struct World::Parts {
   double next_time() const { return scene.time_after(frame); }
   void take_edits(LiveEdits edits);
   // Changes the scene before its first frame.
-  void begin_with(SceneDef scene, const std::vector<TimedChange>& changes) {
-    start = scene;
-    apply(std::move(scene), changes);
+  void begin_with(SceneDef changed, const std::vector<TimedChange>& changes) {
+    start = changed;
+    apply(std::move(changed), changes);
     end_last_changes();
   }
   void attach_handles();
-  // Makes the step of an island that was prepared. Returns whether it succeeded.
+  // Makes the step of an island that was prepared. Returns whether it succeeded. number: of the substep in its frame.
   // is_known: whether the watch has been told that it was prepared.
-  bool step(const std::vector<std::size_t>& island, int substep, const StepWatch& watch, bool is_known);
+  bool step(const std::vector<std::size_t>& island, int number, const StepWatch& watch, bool is_known);
   // Makes the steps of all islands.
-  bool step_all(const std::vector<std::vector<std::size_t>>& all, int substep, const StepWatch& watch);
+  bool step_all(const std::vector<std::vector<std::size_t>>& all, int number, const StepWatch& watch);
 };
 
 void World::Parts::apply(SceneDef changed, const std::vector<TimedChange>& changes) {
@@ -276,33 +276,33 @@ void World::prepare(int substep) {
   for (const auto& body : parts_->moving) body->prepare_step(frame, substep);
 }
 
-bool World::Parts::step(const std::vector<std::size_t>& island, int substep, const StepWatch& watch, bool is_known) {
+bool World::Parts::step(const std::vector<std::size_t>& island, int number, const StepWatch& watch, bool is_known) {
   for (const std::size_t b : island) {
-    if (watch.prepared && !is_known) watch.prepared(b, substep);
+    if (watch.prepared && !is_known) watch.prepared(b, number);
   }
   const int failed = islands->step(island);
   for (const std::size_t b : island) {
-    if (watch.made && (failed < 0 || b == std::size_t(failed))) watch.made(b, substep);
+    if (watch.made && (failed < 0 || b == std::size_t(failed))) watch.made(b, number);
   }
   return failed < 0;
 }
 
-bool World::Parts::step_all(const std::vector<std::vector<std::size_t>>& all, int substep, const StepWatch& watch) {
+bool World::Parts::step_all(const std::vector<std::vector<std::size_t>>& all, int number, const StepWatch& watch) {
   const std::vector<std::size_t> independent = islands->find_independent(all);
   std::vector<char> known(bodies.size(), 0), made = known;
   if (!independent.empty()) {
     for (const std::size_t b : independent) {
       known[b] = 1;
-      if (watch.prepared) watch.prepared(b, substep);
+      if (watch.prepared) watch.prepared(b, number);
     }
     for (const std::size_t b : islands->step_at_once(independent)) {
       made[b] = 1;
-      if (watch.made) watch.made(b, substep);
+      if (watch.made) watch.made(b, number);
     }
     saved_ms += islands->saved_ms();
   }
   return std::ranges::all_of(all, [&](const std::vector<std::size_t>& island) {
-    return made[island.front()] != 0 || step(island, substep, watch, known[island.front()] != 0);
+    return made[island.front()] != 0 || step(island, number, watch, known[island.front()] != 0);
   });
 }
 
