@@ -95,14 +95,14 @@ void Pictures::draw_all(const Stage& stage, GlChoice gl, const std::filesystem::
 
 // Draws a picture and hands it on. next: the list of the next one; null where there is none, or nobody asks for it.
 // Returns false when another stage has failed.
-bool Pictures::draw_one(Renderer& renderer, const Listed& listed, const DrawList* next) {
+bool Pictures::draw_one(Renderer& drawing, const Listed& listed, const DrawList* next) {
   if (listed.use == ListUse::none) return true;
   Zone zone("render", {}, listed.frame);
   const Stopwatch watch;
-  Picture picture{listed.frame, listed.use == ListUse::picture, 0, renderer.draw(listed.list)};
+  Picture picture{listed.frame, listed.use == ListUse::picture, 0, drawing.draw(listed.list)};
   if (!targets_.passes.empty()) {
     zone.next("passes");
-    picture.passes = renderer.passes(listed.list, next, targets_.passes);
+    picture.passes = drawing.passes(listed.list, next, targets_.passes);
   }
   picture.render_ms = watch.elapsed_ms();
   zone.next("wait for output");

@@ -86,7 +86,7 @@ class Pictures : public DrawListTarget {
   template <class Work>
   void guarded(const Work& work);
   void draw_all(const Stage& stage, GlChoice gl, const std::filesystem::path& shaders);
-  bool draw_one(Renderer& renderer, const Listed& listed, const DrawList* next);
+  bool draw_one(Renderer& drawing, const Listed& listed, const DrawList* next);
   bool pass_on(Picture picture);
   void compress(Picture& picture) const;
   void compress_all(int number);
