@@ -8,6 +8,8 @@
 #include "base/motion_hull.h"
 #include "film/plan/shipped_files.h"
 #include "film/redraw/smooth_motion.h"
+#include "output/files/obj_file.h"
+#include "output/run/run_record.h"
 
 namespace supple {
 
