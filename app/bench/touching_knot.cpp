@@ -2,6 +2,7 @@
 #include "app/bench/case_text.h"
 #include "app/bench/knotted_bar.h"
 #include "app/bench/names.h"
+#include "app/bench/sections.h"
 #include "app/bench/touching_film.h"
 #include "app/bench/touching_tables.h"
 #include "scene/building/body.h"

@@ -65,7 +65,7 @@ CollidersFace::CollidersFace(const py::list& tables) {
 }
 
 ModelFace::ModelFace(const py::object& vertices, const py::object& tetrahedra, const py::object& material,
-                     const py::object& density, double time_step, const py::object& pinned,
+                     const py::object& density, double time_step, const py::object& pins,
                      const py::object& pin_stiffness, const py::dict& solver) {
   BodyDescription body;
   body.name = "model";
@@ -91,16 +91,16 @@ ModelFace::ModelFace(const py::object& vertices, const py::object& tetrahedra, c
   body.damping = solving.damping;
   settings = solving.settings;
   rest = body.mesh.rest;
-  if (!pinned.is_none()) {
+  if (!pins.is_none()) {
     Handle handle{"pinned", {}, pin_stiffness.is_none() ? 0 : pin_stiffness.cast<double>()};
     if (!pin_stiffness.is_none() && !(handle.stiffness > 0 && std::isfinite(handle.stiffness)))
       throw InputError("pin_stiffness", "must be above 0 [N/m], or None");
-    handle.vertices = vertices_of(pinned, "pinned", rest.rows());
+    handle.vertices = vertices_of(pins, "pinned", rest.rows());
     std::vector<char> taken(std::size_t(rest.rows()), 0);
     for (const std::int32_t v : handle.vertices) {
       if (std::exchange(taken[std::size_t(v)], 1) != 0) throw InputError("pinned", fmt::format("vertex {} twice", v));
     }
-    this->pinned = handle.vertices;
+    pinned = handle.vertices;
     if (!handle.vertices.empty()) body.handles = {handle};
   }
   const py::gil_scoped_release others_run;

@@ -22,10 +22,10 @@ struct ModelFace {
   std::vector<std::int32_t> pinned;  // vertices of the mesh, in the order of targets
   Positions rest;                    // n x 3 in the order of the mesh [m]
 
-  // material: what a scene's body has there; pinned: vertices that are held; pin_stiffness: of their springs [N/m], or
+  // material: what a scene's body has there; pins: vertices that are held; pin_stiffness: of their springs [N/m], or
   // None where they are held exactly. solver: keys of the table [solver] that shape the matrix.
   ModelFace(const py::object& vertices, const py::object& tetrahedra, const py::object& material,
-            const py::object& density, double time_step, const py::object& pinned, const py::object& pin_stiffness,
+            const py::object& density, double time_step, const py::object& pins, const py::object& pin_stiffness,
             const py::dict& solver);
 
   SolverSettings settings;
@@ -50,7 +50,7 @@ class StateFace {
     Threads threads;
     Workspace workspace;
     State state;
-    explicit Held(int threads) : threads(threads), workspace(&this->threads) {}
+    explicit Held(int thread_count) : threads(thread_count), workspace(&threads) {}
   };
   Busy busy_;
   pid_t process_ = getpid();

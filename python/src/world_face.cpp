@@ -272,11 +272,11 @@ void WorldFace::move(const std::string& body, const std::string& handle, const p
     first = held->world.frames() == 0;
   }
   const auto key = [](double t, const Vec3& to, const Vec3& turn) {
-    py::dict key;
-    key["t"] = t;
-    key["move"] = tuple_of(to);
-    key["turn_deg"] = tuple_of(turn);
-    return key;
+    py::dict values;
+    values["t"] = t;
+    values["move"] = tuple_of(to);
+    values["turn_deg"] = tuple_of(turn);
+    return values;
   };
   // A change moves evenly over its frame, but before the first frame it holds from the start.
   py::list keys;

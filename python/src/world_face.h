@@ -83,8 +83,8 @@ class WorldFace {
     std::optional<WorldErrors> errors;
     std::unique_ptr<WorldPictures> pictures;
 
-    Held(int threads, Script script, std::vector<Body> bodies)
-        : threads(threads), world(std::move(script), std::move(bodies)) {}
+    Held(int thread_count, Script script, std::vector<Body> bodies)
+        : threads(thread_count), world(std::move(script), std::move(bodies)) {}
     WorldPictures& drawn();
   };
   struct Lock {
