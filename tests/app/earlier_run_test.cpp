@@ -173,9 +173,9 @@ TEST_F(EarlierRun, GoesOnFromARunThatWentOnItself) {
 TEST_F(EarlierRun, KeepsTheClockWhereItHasAnotherRate) {
   const Result finer = go_on("finer", {"--frame", "9", "--frames", "4", "--no-images", "--set", "fps=60"});
   ASSERT_EQ(finer.status, 0) << finer.err;
-  const nlohmann::json frames = profile_of(path("finer"))["frames"];
-  EXPECT_NEAR(frames[0]["time_s"].get<double>(), 10.0 / 30 + 1.0 / 60, 1e-12);
-  EXPECT_NEAR(frames[3]["time_s"].get<double>(), 12.0 / 30, 1e-12);
+  const nlohmann::json rows = profile_of(path("finer"))["frames"];
+  EXPECT_NEAR(rows[0]["time_s"].get<double>(), 10.0 / 30 + 1.0 / 60, 1e-12);
+  EXPECT_NEAR(rows[3]["time_s"].get<double>(), 12.0 / 30, 1e-12);
   const Result later = run(folder(), {"render", "bar.toml", "--out", "coarse", "--no-images", "--frames", "2", "--from",
                                       "finer", "--frame", "3", "--set", "fps=30"});
   ASSERT_EQ(later.status, 0) << later.err;
