@@ -102,5 +102,32 @@ TEST(ErrorEstimate, CountsFromThePredictionInContactToo) {
   EXPECT_LT(std::abs(sum / count), 0.7);
 }
 
+// A stiff bar of strain limits has no stiffness near rest: its iterations go on gaining about as much as before, and
+// directions show a fifth or a tenth of what is left.
+TEST(ErrorEstimate, SeesWhatIsLeftOfMotionsInWhichAMaterialIsLoose) {
+  for (const double stiffness : {1e7, 1e8}) {
+    const Model model = build_model(test::bar(StrainLimiting{stiffness, 0.95, 1.05, 0, 1, 1}, test::Held::hard_end));
+    StepInputs inputs = test::still_inputs(model);
+    inputs.gravity = Vec3(0, -9.81, 0);
+    inputs.solver.iterations = 20;
+    inputs.solver.newton = false;
+    State state = rest_state(model);
+    OpenWorkspace w, scratch;
+    Reference reference(model);
+    std::vector<double> ratios;
+    for (int frame = 0; frame < 40; ++frame) {
+      const State before = state;
+      const StepReport report = step(model, inputs, state, w);
+      ASSERT_FALSE(report.failed);
+      const double error = reference.step_errors(model, inputs, before, state, scratch).motion;
+      if (error > 1e-3) ratios.push_back(report.motion_estimate / error);
+    }
+    ASSERT_GT(ratios.size(), 20u);
+    std::ranges::sort(ratios);
+    EXPECT_GT(ratios[ratios.size() / 2], 1.0 / 3) << stiffness;
+    EXPECT_LT(ratios[ratios.size() / 2], 3) << stiffness;
+  }
+}
+
 }  // namespace error_estimate_test
 }  // namespace supple
