@@ -1,5 +1,5 @@
-// Tests that cloth from a file keeps what the file says: colours and textures, names of parts, the flat pieces that its
-// texture coordinates are, and borders that are sewn.
+// Tests that cloth from a file keeps what the file says: colours and textures, the flat pieces that its texture
+// coordinates are, and borders that are sewn.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -17,98 +17,16 @@
 #include "support/bodies.h"
 #include "support/colored_files.h"
 #include "support/scene_text.h"
+#include "support/sheet_from_file.h"
 
 namespace supple {
 namespace cloth_from_file_test {
 
-constexpr int cells = 8;  // of the sheet, along each side
+using test::cells;
+using test::expect_part;
+using test::has;
 
-// Says how a sheet of 1 m by 1 m is written. Its two halves meet at x = 0.5.
-struct SheetFile {
-  double gap = 0;                                                               // between the halves [m]
-  std::array<double, 2> left = {0, 0.25}, right = {1, -0.25};                   // u = first + second x, on each half
-  std::string left_name = "g left", right_name = "o right side\nusemtl print";  // lines before their faces
-  bool places = true, right_places = true;
-};
-
-// Returns an OBJ file of a sheet in the plane z = 0, whose v is y / 4.
-std::string sheet_text(const SheetFile& sheet) {
-  std::string text = "mtllib sheet.mtl\n", faces[2];
-  int vertices = 0;
-  for (int half = 0; half < 2; ++half) {
-    const auto& [first, slope] = half == 0 ? sheet.left : sheet.right;
-    for (int j = 0; j <= cells; ++j) {
-      for (int i = 0; i <= cells / 2; ++i) {
-        const double x = 0.5 * half + double(i) / cells, y = double(j) / cells;
-        text += fmt::format("v {} {} 0\nvt {} {}\n", x + half * sheet.gap, y, first + slope * x, y / 4);
-      }
-    }
-    const bool placed = sheet.places && (half == 0 || sheet.right_places);
-    const auto corner = [&](int i, int j) {
-      const int number = vertices + j * (cells / 2 + 1) + i + 1;
-      return placed ? fmt::format(" {0}/{0}", number) : fmt::format(" {}", number);
-    };
-    for (int j = 0; j < cells; ++j) {
-      for (int i = 0; i < cells / 2; ++i) {
-        faces[half] += "f" + corner(i, j) + corner(i + 1, j) + corner(i + 1, j + 1) + "\n";
-        faces[half] += "f" + corner(i, j) + corner(i + 1, j + 1) + corner(i, j + 1) + "\n";
-      }
-    }
-    vertices += (cells + 1) * (cells / 2 + 1);
-  }
-  return text + sheet.left_name + "\nusemtl print\n" + faces[0] + sheet.right_name + "\n" + faces[1];
-}
-
-class ClothFromFile : public ::testing::Test {
- protected:
-  ClothFromFile() {
-    test::write_text(folder_.path / "sheet.mtl", "newmtl print\nKd 1 1 1\nmap_Kd print.png\n");
-    write_png(folder_.path / "print.png", 32, 32, test::squares_picture(32, 4));
-    write({});
-  }
-  void write(const SheetFile& sheet) const { test::write_text(folder_.path / "sheet.obj", sheet_text(sheet)); }
-
-  SceneDef scene_with(const std::string& cloth, const std::string& keys = "") const {
-    test::write_text(folder_.path / "s.toml", fmt::format("[[body]]\nname = \"sheet\"\nmaterial = \"cotton\"\n"
-                                                          "cloth = {{ {} }}\n{}",
-                                                          cloth, keys));
-    return load_scene(folder_.path / "s.toml", test::assets, {});
-  }
-  Body body_of(const std::string& cloth, const std::string& keys = "") const {
-    return assemble(scene_with(cloth, keys)).front();
-  }
-  DrawnBody drawn_of(const std::string& cloth, const std::string& keys = "") const {
-    return drawn_bodies({body_of(cloth, keys)}).front();
-  }
-  std::string refusal_of(const std::string& cloth, const std::string& keys = "") const {
-    try {
-      body_of(cloth, keys);
-      return "nothing";
-    } catch (const InputError& error) {
-      EXPECT_GT(error.problems().front().place.line, 0);
-      return error.problems().front().message;
-    }
-  }
-  std::vector<Vec3> held(const std::string& select, const std::string& cloth = "surface = \"sheet.obj\"") const {
-    const Body body = body_of(cloth, "[[body.handles]]\nname = \"pins\"\nselect = { " + select + " }\n");
-    std::vector<Vec3> places;
-    for (const std::int32_t v : body.description.handles.front().vertices)
-      places.push_back(body.unplaced.row(v).transpose());
-    return places;
-  }
-  std::string refusal_to_hold(const std::string& select) const {
-    return refusal_of("surface = \"sheet.obj\"", "[[body.handles]]\nname = \"pins\"\nselect = { " + select + " }\n");
-  }
-  test::TemporaryFolder folder_;
-};
-
-bool has(const std::vector<std::string>& notes, const std::string& part) {
-  return std::ranges::any_of(notes, [&](const std::string& note) { return note.find(part) != std::string::npos; });
-}
-
-void expect_part(const std::string& text, const std::string& part) {
-  EXPECT_NE(text.find(part), std::string::npos) << "found: " << text;
-}
+class ClothFromFile : public test::SheetFromFile {};
 
 // Checks that each drawn triangle lies on one side of the seam, and has the texture's places of its corners there.
 void expect_texture_of_sheet(const DrawnBody& drawn, const Positions& rest) {
@@ -199,165 +117,6 @@ TEST_F(ClothFromFile, ColoursOfVerticesStayAtTheirPlaces) {
   }
   EXPECT_LT(furthest, 0.03);  // colours are linear within the triangles of the file
   EXPECT_FALSE(drawn.skin.color.empty());
-}
-
-TEST_F(ClothFromFile, HandlesTakeGroupsObjectsAndMaterialsByTheirNames) {
-  const std::vector<Vec3> left = held("group = \"left\""), right = held("group = \"right side\"");
-  EXPECT_EQ(left.size(), std::size_t((cells + 1) * (cells / 2 + 1)));
-  for (const Vec3& p : left) EXPECT_LE(p.x(), 0.5);
-  EXPECT_EQ(right.size(), left.size());
-  for (const Vec3& p : right) EXPECT_GE(p.x(), 0.5);
-  expect_part(refusal_to_hold("group = \"print\""), "every vertex of body 'sheet' is held");  // its only material
-  const std::vector<Vec3> rim = held("group = \"left\", border = true");
-  EXPECT_EQ(rim.size(), std::size_t(2 * cells + 1));
-  // The border between two groups stays a line where the triangles are new.
-  const std::vector<Vec3> fine = held("group = \"left\"", "surface = \"sheet.obj\", edge = 0.05");
-  EXPECT_GT(fine.size(), 150u);
-  EXPECT_NEAR(std::ranges::max(fine, {}, [](const Vec3& p) { return p.x(); }).x(), 0.5, 1e-9);
-}
-
-TEST_F(ClothFromFile, ANameThatIsNotThereIsRefusedWithThoseThatAre) {
-  const std::string message = refusal_to_hold("group = \"lefd\"");
-  expect_part(message, "its file names nothing 'lefd'; did you mean 'left'?; it names 'left', 'print', 'right side'");
-  test::write_text(folder_.path / "sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  expect_part(refusal_to_hold("group = \"left\""), "not made of a file that names groups");
-  expect_part(refusal_to_hold("color = \"#ffffff\""), "not made of a file that has colours");
-}
-
-TEST_F(ClothFromFile, HandlesTakeColoursOfTexturesAndNameTheNearestWhereThereIsNone) {
-  std::vector<std::uint8_t> rgb(3 * 8 * 8, 255);
-  for (std::size_t i = 0; i < rgb.size(); i += 3)
-    if (i / 3 % 8 < 1) rgb[i + 1] = rgb[i + 2] = 20;  // the left eighth of the texture is red
-  write_png(folder_.path / "print.png", 8, 8, rgb);
-  const std::vector<Vec3> red = held("color = \"#ff1414\", tolerance = 0.01");
-  EXPECT_EQ(red.size(), std::size_t((cells + 1) * cells / 2));  // u = x / 4 below 1/8, and where 1 - x / 4 is not 1
-  for (const Vec3& p : red) EXPECT_LT(p.x(), 0.5);
-  expect_part(refusal_to_hold("color = \"#ff3c14\", tolerance = 0.1"),
-              "the nearest colour at its vertices is \"#ff1414\", which tolerance = 0.16 takes");
-  EXPECT_EQ(held("color = \"#ff3c14\", tolerance = 0.16").size(), red.size());
-}
-
-// Returns a grey picture of 16 x 8 pixels that has one value in the given columns and rows, counted from the lower left
-// corner, and is black elsewhere.
-std::vector<std::uint8_t> picture_with(std::array<int, 2> columns, std::array<int, 2> rows, std::uint8_t value) {
-  std::vector<std::uint8_t> rgb(3 * 16 * 8, 0);
-  for (int y = rows[0]; y < rows[1]; ++y)
-    for (int x = columns[0]; x < columns[1]; ++x)
-      for (int c = 0; c < 3; ++c) rgb[std::size_t(3 * ((7 - y) * 16 + x) + c)] = value;
-  return rgb;
-}
-
-TEST_F(ClothFromFile, AMaskTakesWhatHasABrightPlaceInTheTexture) {
-  // The right half has u from 7/8 at the seam to 6/8, and v = y / 4. At the seam the left half has u = 1/8, where the
-  // picture is black.
-  write_png(folder_.path / "pins.png", 16, 8, picture_with({13, 15}, {0, 1}, 255));
-  const auto expect_place = [](const Vec3& p) {
-    EXPECT_TRUE(p.x() > 0.5 - 1e-6 && p.x() < 0.75 + 1e-6 && p.y() < 0.5) << p.transpose();
-  };
-  const std::vector<Vec3> pins = held("mask = \"pins.png\"");
-  EXPECT_EQ(pins.size(), 3u * cells / 2);
-  EXPECT_EQ(std::ranges::count_if(pins, [](const Vec3& p) { return p.x() < 0.51; }), cells / 2);
-  for (const Vec3& p : pins) expect_place(p);
-  EXPECT_EQ(held("mask = \"pins.png\", border = true").size(), 3u);
-  // New triangles have their texture coordinates between those of the file.
-  const std::vector<Vec3> fine = held("mask = \"pins.png\"", "surface = \"sheet.obj\", edge = 0.05");
-  EXPECT_GT(fine.size(), 30u);
-  for (const Vec3& p : fine) expect_place(p);
-}
-
-TEST_F(ClothFromFile, AMaskTakesPixelsThatAreBrighterThanAbove) {
-  write_png(folder_.path / "pins.png", 16, 8, picture_with({0, 1}, {0, 8}, 128));
-  EXPECT_EQ(held("mask = \"pins.png\"").size(), std::size_t(2 * (cells + 1)));  // u = 0 and 1/32
-  EXPECT_EQ(held("mask = \"pins.png\", above = 0.501").size(), std::size_t(2 * (cells + 1)));
-  expect_part(refusal_to_hold("mask = \"pins.png\", above = 0.51"),
-              "selects no vertex: at its texture coordinates 'pins.png' is 0.50 bright at most; above = 0.51 asks for");
-  const Body body =
-      body_of("surface = \"sheet.obj\"", "[[body.handles]]\nname = \"pins\"\nselect = { mask = \"pins.png\" }\n");
-  EXPECT_EQ(body.files.back().path.filename(), "pins.png");  // what a film was made of names the picture
-}
-
-TEST(Masks, BothEdgesBelongToThePictureWhichRepeatsBeyond) {
-  Texture picture;  // its upper right pixel is red, the others are black
-  picture.width = picture.height = 2;
-  picture.rgb = {0, 0, 0, 255, 0, 0, 0, 0, 0, 0, 0, 0};
-  constexpr double red = 0.2126;
-  EXPECT_NEAR(brightness_at(picture, {1, 1}), red, 1e-9);
-  EXPECT_NEAR(brightness_at(picture, {0.5, 0.5}), red, 1e-9);
-  EXPECT_NEAR(brightness_at(picture, {-0.25, 1.75}), red, 1e-9);
-  for (const Eigen::Vector2d& dark : {Eigen::Vector2d(0, 1), Eigen::Vector2d(1, 0), Eigen::Vector2d(1.25, 0.75)})
-    EXPECT_EQ(brightness_at(picture, dark), 0);
-}
-
-TEST_F(ClothFromFile, MasksThatCannotBeReadOrLieOnNothingAreRefused) {
-  const auto refused = [&](const std::string& select) { return refusal_to_hold("mask = \"pins.png\"" + select); };
-  expect_part(refused(""), "no such file");
-  test::write_text(folder_.path / "pins.png", "no picture");
-  expect_part(refused(""), "mask = 'pins.png': cannot be read: is neither PNG, JPEG, TGA nor BMP");
-  write_png(folder_.path / "pins.png", 16, 8, picture_with({0, 16}, {0, 8}, 255));
-  std::string bytes = test::read_file(folder_.path / "pins.png");
-  test::write_text(folder_.path / "pins.png", bytes.substr(0, bytes.size() / 2));
-  expect_part(refused(""), "cannot be read: is no PNG that can be read");
-  test::write_text(folder_.path / "pins.png", bytes);
-  expect_part(refused(", above = 2"), "above = 2: must be");
-  expect_part(refused(", color = \"#ff0000\""), "a selection is one of");
-  expect_part(refusal_to_hold("border = true, above = 0.5"), "above: of a mask; there is none here");
-  write({.places = false});
-  expect_part(refused(""), "not made of a surface's file that has texture coordinates");
-}
-
-TEST_F(ClothFromFile, SolidsAreHeldByMasksNearTheirSurface) {
-  const TriMesh ball = test::sphere_surface(0.5, 32, 16);
-  std::string places, faces;
-  for (Eigen::Index v = 0; v < ball.points.rows(); ++v) places += fmt::format("vt 0.5 {}\n", ball.points(v, 1) + 0.5);
-  for (const auto& t : ball.triangles.rowwise())
-    faces += fmt::format("f {0}/{0} {1}/{1} {2}/{2}\n", t.x() + 1, t.y() + 1, t.z() + 1);
-  const std::string text = test::obj_text(ball), head = text.substr(0, text.find("f "));
-  test::write_text(folder_.path / "ball.obj", head + places + faces);
-  write_png(folder_.path / "pins.png", 16, 8, picture_with({0, 16}, {6, 8}, 255));
-  const auto held_of = [&] {
-    test::write_text(folder_.path / "b.toml",
-                     "[[body]]\nmaterial = \"jelly\"\nvertices = 2000\nsurface = \"ball.obj\"\n[[body.handles]]\n"
-                     "name = \"top\"\nselect = { mask = \"pins.png\" }\n");
-    return assemble(load_scene(folder_.path / "b.toml", test::assets, {})).front();
-  };
-  const Body body = held_of();
-  EXPECT_GT(body.description.handles.front().vertices.size(), 40u);
-  for (const std::int32_t v : body.description.handles.front().vertices) {
-    EXPECT_GT(body.unplaced(v, 1), 0.2);  // the picture is bright above 0.25, where an element is 0.1 large
-    EXPECT_GT(body.unplaced.row(v).norm(), 0.35);
-  }
-  test::write_text(folder_.path / "ball.obj", text);
-  EXPECT_THROW(held_of(), InputError);
-}
-
-TEST_F(ClothFromFile, SolidsAreHeldByNamesAndColoursNearTheirSurface) {
-  std::string text = test::obj_text(test::sphere_surface(0.5, 32, 16));
-  std::string upper = "g top\n", lower = "g rest\n", head;
-  const TriMesh ball = test::sphere_surface(0.5, 32, 16);
-  for (Eigen::Index t = 0; t < ball.triangles.rows(); ++t) {
-    double y = 0;
-    for (int k = 0; k < 3; ++k) y += ball.points(ball.triangles(t, k), 1) / 3;
-    (y > 0.3 ? upper : lower) +=
-        fmt::format("f {} {} {}\n", ball.triangles(t, 0) + 1, ball.triangles(t, 1) + 1, ball.triangles(t, 2) + 1);
-  }
-  head = text.substr(0, text.find("f "));
-  test::write_text(folder_.path / "ball.obj", head + upper + lower);
-  test::write_text(folder_.path / "ball.ply", test::ply_text(ball, [](const Vec3& p) {
-                     return p.y() > 0.3 ? std::array{255, 0, 0} : std::array{0, 0, 255};
-                   }));
-  for (const char* by :
-       {"surface = \"ball.obj\"\n[[body.handles]]\nname = \"top\"\nselect = { group = \"top\" }\n",
-        "surface = \"ball.ply\"\n[[body.handles]]\nname = \"top\"\nselect = { color = \"#ff0000\" }\n"}) {
-    test::write_text(folder_.path / "b.toml", fmt::format("[[body]]\nmaterial = \"jelly\"\nvertices = 2000\n{}", by));
-    const Body body = assemble(load_scene(folder_.path / "b.toml", test::assets, {})).front();
-    const std::vector<std::int32_t>& vertices = body.description.handles.front().vertices;
-    EXPECT_GT(vertices.size(), 40u);
-    EXPECT_LT(vertices.size(), 400u);
-    for (const std::int32_t v : vertices) {
-      EXPECT_GT(body.unplaced(v, 1), 0.2);
-      EXPECT_GT(body.unplaced.row(v).norm(), 0.35);
-    }
-  }
 }
 
 TEST_F(ClothFromFile, ACutIsAtRestAsItLiesInTheTexture) {
