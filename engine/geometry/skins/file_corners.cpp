@@ -81,9 +81,9 @@ Eigen::Vector2d texture_place(const RemeshedPlace& place, const ColoredSurface& 
   return sum;
 }
 
-std::shared_ptr<const CornerPlaces> places_on(const FileCorners& corners, const ColoredSurface& file) {
+std::shared_ptr<const TextureCorners> places_on(const FileCorners& corners, const ColoredSurface& file) {
   if (file.places.empty()) return nullptr;
-  auto places = std::make_shared<CornerPlaces>();
+  auto places = std::make_shared<TextureCorners>();
   for (const auto& triangle : corners)
     places->push_back(
         {texture_place(triangle[0], file), texture_place(triangle[1], file), texture_place(triangle[2], file)});

@@ -33,10 +33,10 @@ std::vector<std::array<std::int32_t, 2>> file_seams(const TriMesh& surface, cons
 Eigen::Vector2d texture_place(const RemeshedPlace& place, const ColoredSurface& file);
 
 // Holds the texture coordinates of the corners of triangles, by triangle.
-using CornerPlaces = std::vector<std::array<Eigen::Vector2d, 3>>;
+using TextureCorners = std::vector<std::array<Eigen::Vector2d, 3>>;
 
 // Returns the texture coordinates of triangles by where their corners come from; null where the file has none.
-std::shared_ptr<const CornerPlaces> places_on(const FileCorners& corners, const ColoredSurface& file);
+std::shared_ptr<const TextureCorners> places_on(const FileCorners& corners, const ColoredSurface& file);
 
 // Returns the parts of triangles by where their corners come from; null where no part of the file has a name.
 std::shared_ptr<const SurfaceParts> parts_on(const FileCorners& corners, const ColoredSurface& file);

@@ -308,7 +308,7 @@ std::shared_ptr<const SurfaceParts> parts_on(const TriMesh& surface, const Color
   return parts;
 }
 
-std::shared_ptr<const CornerPlaces> places_on(const TriMesh& surface, const ColoredSurface& file) {
+std::shared_ptr<const TextureCorners> places_on(const TriMesh& surface, const ColoredSurface& file) {
   if (file.places.empty()) return nullptr;
   FileCorners corners;
   FileTriangles triangles(file);

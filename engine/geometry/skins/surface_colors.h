@@ -35,7 +35,7 @@ std::shared_ptr<const SurfaceParts> parts_on(const TriMesh& surface, const Color
 
 // Returns the texture coordinates of a surface's corners, which find theirs as colors_on finds colours; null where the
 // file has none.
-std::shared_ptr<const CornerPlaces> places_on(const TriMesh& surface, const ColoredSurface& file);
+std::shared_ptr<const TextureCorners> places_on(const TriMesh& surface, const ColoredSurface& file);
 
 // Returns the colour at a place of a triangle in sRGB, each channel 0 to 1. weights: barycentric.
 Vec3 srgb_at(const SurfaceColors& colors, Eigen::Index triangle, const Vec3& weights);

@@ -14,11 +14,11 @@ struct BodySurface {
   std::vector<SolidSurface> pieces;  // the largest first; those that are left out are not among them
   std::vector<SourceFile> sources;   // of each piece
   std::vector<double> volumes;       // of each piece [m^3]
-  std::vector<std::shared_ptr<const SurfaceColors>> colors;  // of each piece's skin; null where the file has none
-  std::vector<std::shared_ptr<const SurfaceParts>> parts;    // the same, where a handle asks for names; else null
-  std::vector<std::shared_ptr<const CornerPlaces>> places;   // the same, where a handle has a mask; else null
-  std::vector<std::vector<std::string>> names;               // which each part of the file has
-  std::string found;                                         // which colours the file has, in words; empty: none
+  std::vector<std::shared_ptr<const SurfaceColors>> colors;   // of each piece's skin; null where the file has none
+  std::vector<std::shared_ptr<const SurfaceParts>> parts;     // the same, where a handle asks for names; else null
+  std::vector<std::shared_ptr<const TextureCorners>> places;  // the same, where a handle has a mask; else null
+  std::vector<std::vector<std::string>> names;                // which each part of the file has
+  std::string found;                                          // which colours the file has, in words; empty: none
   std::vector<std::string> notes;
   bool touching = false;  // whether parts of a piece are near each other without an overlap
   Bounds box;             // box of all that was read [m]
