@@ -59,8 +59,9 @@ void smooth_for_pixels(DrawnBody& drawn, const Positions& rest, double pixel) {
   drawn.casters = before_last_level(drawn.skin.rest.triangles);
 }
 
-// Where a cloth leaves the ground, a smooth surface overshoots by a part of an edge, and the ground would hide it
-// there. So a place of it stays above the ground where all vertices do from which the place follows.
+// Returns a place of the smooth surface. Where a cloth rises from the ground, this surface dips below the vertices by a
+// part of an edge, and the ground would hide it. So a place below the ground is lifted to its lowest vertex, or to the
+// ground where all of its vertices are above it.
 Vec3 smooth_place(const SurfaceWeights& weights, Eigen::Index row, const Positions& now) {
   Vec3 place = weighted_point(weights, row, now);
   if (place.y() >= 0) return place;

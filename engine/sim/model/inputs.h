@@ -101,8 +101,7 @@ struct SolverSettings {
 };
 
 // Says that points of one part of a model may touch the surface of another, or that a part may touch itself
-// (contact/surface_contacts.h). A world gives two of these for two parts that meet, one
-// for the points of either.
+// (contact/surface_contacts.h). A world gives two of these for two parts that meet, one for the points of either.
 struct Meeting {
   std::int32_t points = 0, surface = 0;  // numbers of two parts, or twice that of one that touches itself
   double friction = 0;                   // coefficient of Coulomb's law between the two
