@@ -49,6 +49,18 @@ double distance_of_edges(const TwoEdges& edges) {
                    distance_to_edge(other_to, edges.from, to)});
 }
 
+// Returns the box around two boxes.
+template <class Box>
+Box around(const Box& a, const Box& b) {
+  return {a.lower.min(b.lower), a.upper.max(b.upper)};
+}
+
+// Tells whether two boxes are no further from each other than `margin` [m].
+template <class Box>
+bool are_near(const Box& a, const Box& b, double margin) {
+  return (a.lower - b.upper).max(b.lower - a.upper).maxCoeff() <= margin;
+}
+
 }  // namespace
 
 OwnSheet::OwnSheet(const MovingSurface& moving, const Positions& rest)
@@ -86,18 +98,23 @@ bool OwnSheet::are_neighbours(std::int32_t a, std::int32_t b) const {
   return std::binary_search(first, end, b);
 }
 
-// Tells whether a vertex and a triangle are not near each other in the mesh, nor where nothing bends it.
+bool OwnSheet::are_beside(std::int32_t vertex, std::int32_t triangle) const {
+  return are_neighbours(vertex, triangles_(triangle, 0)) || are_neighbours(vertex, triangles_(triangle, 1)) ||
+         are_neighbours(vertex, triangles_(triangle, 2));
+}
+
+bool OwnSheet::are_beside(const EdgeEnds& one, const EdgeEnds& other) const {
+  return are_neighbours(one[0], other[0]) || are_neighbours(one[0], other[1]) || are_neighbours(one[1], other[0]) ||
+         are_neighbours(one[1], other[1]);
+}
+
+// Tells whether a vertex and a triangle are not near each other where nothing bends the sheet.
 bool OwnSheet::is_apart(std::int32_t vertex, std::int32_t triangle) const {
-  for (int k = 0; k < 3; ++k)
-    if (are_neighbours(vertex, triangles_(triangle, k))) return false;
   const std::optional<Over> at_rest = over(corners_of(triangle, rest_), rest_.row(vertex));
   return !at_rest || std::abs(at_rest->above) > 2 * layer_;
 }
 
 bool OwnSheet::are_apart(const EdgeEnds& one, const EdgeEnds& other) const {
-  for (const std::int32_t a : one)
-    for (const std::int32_t b : other)
-      if (are_neighbours(a, b)) return false;
   const TwoEdges at_rest(one, other, rest_);
   return !at_rest.meet(0) || !at_rest.are_nearer(2 * layer_);
 }
@@ -121,43 +138,58 @@ double OwnSheet::volume(const Corners& corners, const Vec3& p) {
   return (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(p - corners[0]);
 }
 
-// Calls points(vertex, triangle) and edges(one, other) for pairs whose boxes may come near, until a call returns true;
-// tells whether one did.
+// Finds the boxes in which the vertices move, in the frame that moves by `carried`.
+void OwnSheet::find_boxes(const Vec3& carried, const Positions& q, const Positions& x) const {
+  boxes_.resize(std::size_t(q.rows()));
+  const Eigen::Array4d common(carried[0], carried[1], carried[2], 0);
+  for (std::size_t v = 0; v < boxes_.size(); ++v) {
+    const double *from = q.data() + 3 * v, *to = x.data() + 3 * v;
+    const Eigen::Array4d start(from[0], from[1], from[2], 0), end = Eigen::Array4d(to[0], to[1], to[2], 0) - common;
+    boxes_[v] = {start.min(end), start.max(end)};
+  }
+}
+
+// Calls points(vertex, triangle) and edges(one, other) for pairs that share no vertex and whose boxes may come near,
+// until a call returns true; tells whether one did.
 template <class Points, class Edges>
 bool OwnSheet::any_pair(const MovingSurface& moving, double margin, const Vec3& carried, const Positions& q,
                         const Positions& x, const Points& points, const Edges& edges) const {
+  find_boxes(carried, q, x);
   const auto box_of = [&](const auto& vertices) {
-    Bounds box;
-    for (const std::int32_t v : vertices) {
-      box.include(q.row(v));
-      box.include(x.row(v).transpose() - carried);
-    }
+    PathBox box = boxes_[std::size_t(vertices[0])];
+    for (std::size_t i = 1; i < vertices.size(); ++i) box = around(box, boxes_[std::size_t(vertices[i])]);
     return box;
   };
-  const auto are_near = [&](const Bounds& a, const Bounds& b) {
-    return (a.lower.array() - margin <= b.upper.array()).all() && (b.lower.array() - margin <= a.upper.array()).all();
-  };
   const auto any_point = [&](std::int32_t of, std::int32_t t) {
-    const Bounds box = box_of(std::array{triangles_(t, 0), triangles_(t, 1), triangles_(t, 2)});
-    for (auto i = own_begin_[std::size_t(of)]; i < own_begin_[std::size_t(of) + 1]; ++i) {
+    const auto begin = own_begin_[std::size_t(of)], end = own_begin_[std::size_t(of) + 1];
+    if (begin == end) return false;
+    const std::array corners = {triangles_(t, 0), triangles_(t, 1), triangles_(t, 2)};
+    const PathBox box = box_of(corners);
+    for (auto i = begin; i < end; ++i) {
       const std::int32_t v = own_[std::size_t(i)];
-      if (are_near(box, box_of(std::array{v})) && points(v, t)) return true;
+      if (v == corners[0] || v == corners[1] || v == corners[2]) continue;
+      if (are_near(box, boxes_[std::size_t(v)], margin) && points(v, t)) return true;
+    }
+    return false;
+  };
+  const auto any_edge = [&](std::int32_t t, std::int32_t u) {
+    for (const EdgeEnds& one : edges_.of(t)) {
+      const PathBox box = box_of(one);
+      for (const EdgeEnds& other : edges_.of(u)) {
+        if (one[0] == other[0] || one[0] == other[1] || one[1] == other[0] || one[1] == other[1]) continue;
+        if (are_near(box, box_of(other), margin) && edges(one, other)) return true;
+      }
     }
     return false;
   };
   return moving.any_own_triangles(parts_, margin, carried, [&](std::int32_t t, std::int32_t u) {
-    if (any_point(t, u) || any_point(u, t)) return true;
-    for (const EdgeEnds& one : edges_.of(t)) {
-      const Bounds box = box_of(one);
-      for (const EdgeEnds& other : edges_.of(u))
-        if (are_near(box, box_of(other)) && edges(one, other)) return true;
-    }
-    return false;
+    return any_point(t, u) || any_point(u, t) || any_edge(t, u);
   });
 }
 
 bool OwnSheet::may_meet(std::int32_t vertex, std::int32_t triangle, const Positions& q, const Positions& x,
                         double margin) const {
+  if (are_beside(vertex, triangle)) return false;
   const std::array<std::int32_t, 3> corners = {triangles_(triangle, 0), triangles_(triangle, 1),
                                                triangles_(triangle, 2)};
   const double before = distance_to_triangle(q.row(vertex), corners_of(triangle, q));
@@ -169,6 +201,7 @@ bool OwnSheet::may_meet(std::int32_t vertex, std::int32_t triangle, const Positi
 
 bool OwnSheet::may_meet(const EdgeEnds& one, const EdgeEnds& other, const Positions& q, const Positions& x,
                         double margin) const {
+  if (are_beside(one, other)) return false;
   const double before = distance_of_edges({one, other, q}), motion = motion_beside(one, other, q, x);
   if (before - motion > margin) return false;
   return may_come_nearer(before, distance_of_edges({one, other, x}), motion, margin) && are_apart(one, other);

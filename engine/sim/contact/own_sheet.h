@@ -62,11 +62,20 @@ class OwnSheet {
   double layer() const { return layer_; }  // [m]
 
  private:
+  // Holds the box in which something moves: three coordinates, and a 0 [m].
+  struct PathBox {
+    Eigen::Array4d lower, upper;
+  };
+
   template <class Points, class Edges>
   bool any_pair(const MovingSurface& moving, double margin, const Vec3& carried, const Positions& q, const Positions& x,
                 const Points& points, const Edges& edges) const;
+  void find_boxes(const Vec3& carried, const Positions& q, const Positions& x) const;
   Corners corners_of(std::int32_t triangle, const Positions& x) const;
+  // These tell what is near each other in the mesh: the same vertex, or the two ends of an edge, and what has these.
   bool are_neighbours(std::int32_t a, std::int32_t b) const;
+  bool are_beside(std::int32_t vertex, std::int32_t triangle) const;
+  bool are_beside(const EdgeEnds& one, const EdgeEnds& other) const;
   bool may_meet(std::int32_t vertex, std::int32_t triangle, const Positions& q, const Positions& x,
                 double margin) const;
   bool may_meet(const EdgeEnds& one, const EdgeEnds& other, const Positions& q, const Positions& x,
@@ -80,7 +89,8 @@ class OwnSheet {
   std::vector<std::int32_t> own_begin_, own_;            // by triangle: vertices that no earlier triangle has
   std::vector<std::int32_t> neighbours_begin_, around_;  // by vertex: the other ends of its edges, ascending
   mutable MovingSurface::SheetParts parts_;
-  double layer_;  // [m]
+  mutable std::vector<PathBox> boxes_;  // by vertex, of the latest search
+  double layer_;                        // [m]
 };
 
 }  // namespace supple
