@@ -1,7 +1,10 @@
-// Tests which side of a collider holds a vertex that has come into it.
+// Tests which side of a collider holds a vertex that has come into it, and ways through the frame of one that turns.
 #include "sim/contact/collider_view.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
 
 #include "support/contact_scene.h"
 
@@ -46,6 +49,60 @@ TEST(ColliderView, AVertexOutsideHasTheClosestSide) {
   const Bar bar;
   EXPECT_EQ(bar.holding(Vec3(0, 0.02, 0), Vec3(0.001, 0.009, 0)), Vec3::UnitY());
   EXPECT_EQ(bar.holding(Vec3(0.02, 0, 0), Vec3(0.009, 0.001, 0)), Vec3::UnitX());
+}
+
+// A ball that goes up and turns by 40 degrees in a step.
+struct TurningBall {
+  Collider collider{"ball", test::shape_of(Sphere{0.1})};
+  ColliderMotion motion = turned();
+  ColliderTraits traits{collider.shape.certainty(), collider.shape.half_thickness(),
+                        collider.shape.usual_half_thickness()};
+  ColliderView view{collider, motion, traits};
+
+  static constexpr double angle = 0.7;
+  static ColliderMotion turned() {
+    ColliderMotion motion;
+    motion.start = Eigen::Translation3d(0.2, 0.1, -0.3) * Eigen::AngleAxisd(0.3, Vec3::UnitX());
+    motion.end = Eigen::Translation3d(0.2, 0.4, -0.3) * Eigen::AngleAxisd(angle, Vec3(1, 2, 2) / 3) *
+                 Eigen::AngleAxisd(0.3, Vec3::UnitX());
+    return motion;
+  }
+};
+
+TEST(ColliderView, WaysThroughATurningFrameArePathsOfItsPoses) {
+  const TurningBall ball;
+  const Way way = ball.view.way(Vec3(0.5, 0.2, 0.1), Vec3(-0.1, 0.3, 0.4));
+  for (const double share : {0.0, 0.25, 0.5, 1.0}) {
+    const Vec3 world = way.q + share * (way.x - way.q);
+    const Vec3 expected = ball.motion.end.inverse() * (ball.view.motion_after(share) * world);
+    EXPECT_LT((ball.view.at(way, share) - expected).norm(), 1e-14) << share;
+  }
+}
+
+TEST(ColliderView, NoPartOfAWayThroughATurningFrameIsFasterThanItsLengthSays) {
+  constexpr int parts = 500;
+  const TurningBall ball;
+  const std::array<Vec3, 3> places = {Vec3(0.5, 0.2, 0.1), Vec3(-0.1, 0.3, 0.4), Vec3(0.21, 0.3, -0.28)};
+  for (const Vec3& q : places) {
+    for (const Vec3& x : places) {
+      const Way way = ball.view.way(q, x);
+      double fastest = 0;
+      for (int i = 0; i < parts; ++i) {
+        const Vec3 from = ball.view.at(way, double(i) / parts), to = ball.view.at(way, double(i + 1) / parts);
+        fastest = std::max(fastest, parts * (to - from).norm());
+      }
+      EXPECT_LE(fastest, (1 + 1e-9) * way.length);
+      EXPECT_GE(fastest, 0.99 * way.length);
+    }
+  }
+}
+
+TEST(ColliderView, WhatTurnsWithAColliderHardlyMovesBesideIt) {
+  const TurningBall ball;
+  const Vec3 beside(0.3, 0.1, -0.3);
+  const Way way = ball.view.way(beside, ball.view.carried(beside));
+  EXPECT_LT(way.length, 0.51 * TurningBall::angle * TurningBall::angle * 0.1);  // the chord of the arc is not its path
+  EXPECT_GT(way.length, 0);
 }
 
 }  // namespace collider_view_test

@@ -41,13 +41,16 @@ ColliderView::ColliderView(const Collider& collider, const ColliderMotion& motio
   if (!moves_ || surface_ != nullptr) return;  // the turns of its triangles bend no ways
   const Eigen::AngleAxisd turn(end_.linear() * start_.linear().transpose());
   bends_ = turn.angle() > least_bend;
-  if (bends_) turn_ = turn.angle() * turn.axis();
+  if (!bends_) return;
+  angle_ = turn.angle();
+  axis_ = turn.axis();
+  turn_ = angle_ * axis_;
 }
 
-// The pace is at most that of the point itself, and of the turn about the collider's origin.
+// The pace is the length of a vector that changes evenly, so it is greatest at one of the ends.
 double ColliderView::bent_length(const Vec3& q, const Vec3& x) const {
-  const Vec3 from = q - start_.translation(), to = x - end_.translation();
-  return (to - from).norm() + turn_.norm() * std::max(from.norm(), to.norm());
+  const Vec3 from = q - start_.translation(), to = x - end_.translation(), straight = to - from;
+  return std::max((straight - turn_.cross(from)).norm(), (straight - turn_.cross(to)).norm());
 }
 
 Eigen::Isometry3d ColliderView::pose(double share) const {
@@ -57,13 +60,16 @@ Eigen::Isometry3d ColliderView::pose(double share) const {
     const Eigen::Quaterniond from(start_.linear()), to(end_.linear());
     return pose.rotate(from.slerp(share, to));
   }
-  const double angle = turn_.norm();
-  return pose.rotate(Eigen::AngleAxisd(share * angle, turn_ / angle)).rotate(start_.linear());
+  return pose.rotate(Eigen::AngleAxisd(share * angle_, axis_)).rotate(start_.linear());
 }
 
+// Turns back by Rodrigues' formula, which a way asks for many times.
 Vec3 ColliderView::at(const Way& way, double share) const {
   if (!bends_) return way.a + share * (way.b - way.a);
-  return pose(share).inverse() * Vec3(way.q + share * (way.x - way.q));
+  const Vec3 arm = way.q + share * (way.x - way.q) - (1 - share) * start_.translation() - share * end_.translation();
+  const double sine = std::sin(share * angle_), cosine = std::cos(share * angle_);
+  const Vec3 back = cosine * arm - sine * axis_.cross(arm) + (1 - cosine) * axis_.dot(arm) * axis_;
+  return start_.linear().transpose() * back;
 }
 
 Vec3 ColliderView::pace(const Way& way, double share) const {
@@ -139,13 +145,13 @@ std::optional<ColliderView::Entry> ColliderView::entry(const Way& way, double fi
   return Entry{closest(at(way, *share), near), *share};
 }
 
-// Tells whether a straight way between two places in the open may lead through triangles, not just through the layer
-// around them.
+// Tells whether a way between two places in the open may lead through triangles, not just through the layer around
+// them.
 bool ColliderView::leads_through(const Way& way, double field_at_a, double field_at_b) const {
   const double to_a = field_at_a + collider_.thickness, to_b = field_at_b + collider_.thickness;
   if (to_a <= 0 || to_b <= 0) return true;
   if (to_a + to_b > (1 + 1e-9) * way.length) return false;  // the balls without triangles around both ends cover it
-  return shape_.entry(way.a, way.b).has_value();
+  return bends_ || shape_.entry(way.a, way.b).has_value();
 }
 
 std::optional<SurfacePoint> ColliderView::holding(const Way& way, double field_at_a, double reach,
@@ -164,7 +170,7 @@ std::optional<SurfacePoint> ColliderView::holding(const Way& way, double field_a
   if (short_way(way.length + std::max(0.0, -field_at_a)) &&
       !(entered_now && !on_one_side(closest(way.a, near).normal, here.normal)))
     return here.distance < reach ? std::optional(here) : std::nullopt;
-  if (!bends_ && knows_bounds() && !leads_through(way, field_at_a, here.distance))
+  if (knows_bounds() && !leads_through(way, field_at_a, here.distance))
     return here.distance < reach ? std::optional(here) : std::nullopt;
   const std::optional<Entry> entered = entry(way, field_at_a, near);
   if (!entered) return here.distance < reach ? std::optional(here) : std::nullopt;

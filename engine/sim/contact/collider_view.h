@@ -121,8 +121,11 @@ class ColliderView {
   ColliderTraits traits_;
   const SurfaceMove* surface_ = nullptr;  // null: the collider does not deform in the step
   bool moves_ = false;
-  bool bends_ = false;        // whether the collider turns so far that ways are arcs
-  Vec3 turn_ = Vec3::Zero();  // the collider's turn in a step, about the world's axes, where it bends ways [rad]
+  bool bends_ = false;  // whether the collider turns so far that ways are arcs
+  // Hold the collider's turn in a step where it bends ways: about the world's axes, and as an angle about an axis
+  // [rad].
+  Vec3 turn_ = Vec3::Zero(), axis_ = Vec3::Zero();
+  double angle_ = 0;
 };
 
 }  // namespace supple
