@@ -107,6 +107,21 @@ bool certainly_no_deeper(const ShapeProbe& probe, double certainty, const Vec3& 
   return clear(ab, bc, ca) && clear(a, ab, ca) && clear(ab, b, bc) && clear(ca, bc, c);
 }
 
+constexpr Eigen::Index triangles_a_group = 32;  // consecutive ones, which mostly are neighbours
+
+struct Ball {
+  Vec3 center;
+  double radius;
+};
+
+// Returns a ball around the corners of some triangles.
+Ball ball_around(const Positions& x, const Triangles& triangles, Eigen::Index first, Eigen::Index end) {
+  Bounds box;
+  for (Eigen::Index t = first; t < end; ++t)
+    for (int k = 0; k < 3; ++k) box.include(x.row(triangles(t, k)));
+  return {box.center(), 0.5 * box.diagonal()};
+}
+
 // Calls visit(corners, descent, depth_at) for the triangles that may be deeper in a shape than `known`, in the shape's
 // own frame. Depth is looked for in each piece of a union, and depth_at(point) measures it in the whole.
 template <class Visit>
@@ -125,13 +140,23 @@ void visit_deep_triangles(const Shape& shape, const Eigen::Isometry3d& pose, con
   }
   std::vector<QueryMemory> near(pieces.size() + 1);
   const auto depth_at = [&](const Vec3& p) { return -probe.closest(p, near.back()).distance; };
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    TriangleCorners corner;
-    for (int k = 0; k < 3; ++k) corner[k] = to_local * Vec3(x.row(triangles(t, k)));
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      if (certainly_no_deeper(probes[i], certainties[i], corner[0], corner[1], corner[2], known, levels[i], near[i]))
-        continue;
-      visit(corner, TriangleInShape(probes[i], pieces[i].half_thickness, corner, near[i]).descend(), depth_at);
+  const auto is_clear = [&](const Ball& ball) {
+    const Vec3 center = to_local * ball.center;
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+      if (certainties[i] * probes[i].distance(center, near[i]) < ball.radius) return false;
+    return true;
+  };
+  for (Eigen::Index first = 0; first < triangles.rows(); first += triangles_a_group) {
+    const Eigen::Index end = std::min(first + triangles_a_group, triangles.rows());
+    if (is_clear(ball_around(x, triangles, first, end))) continue;
+    for (Eigen::Index t = first; t < end; ++t) {
+      TriangleCorners corner;
+      for (int k = 0; k < 3; ++k) corner[k] = to_local * Vec3(x.row(triangles(t, k)));
+      for (std::size_t i = 0; i < pieces.size(); ++i) {
+        if (certainly_no_deeper(probes[i], certainties[i], corner[0], corner[1], corner[2], known, levels[i], near[i]))
+          continue;
+        visit(corner, TriangleInShape(probes[i], pieces[i].half_thickness, corner, near[i]).descend(), depth_at);
+      }
     }
   }
 }
