@@ -220,7 +220,8 @@ StabilityOutcome HardRun::play(std::vector<Positions>* motion, WorstStep* worst)
   State before;
   const StepWatch watch{[&](std::size_t, int) {
                           if (!budget.knows_springs())
-                            budget.know_springs(model(), body().targets_at_start(), body().state());
+                            budget.know_springs(model(), body().targets_at_start(), body().seams_at_start(),
+                                                body().state());
                           budget.before_step(model(), body().inputs(), body().state(), workspace);
                           before = body().state();
                         },

@@ -23,6 +23,10 @@ SparseMatrix system_matrix_of(const Model& model) {
     add_row(model.damping, 1);
     add_row(model.bending, scale);
   }
+  for (const SeamPair& pair : model.seams.pairs)
+    pair.for_each_entry([&](std::int32_t row, std::int32_t column, double value) {
+      if (std::max(row, column) < model.free) entries.emplace_back(row, column, scale * value);
+    });
   for_each_element(model, [&](const ElementView& element) {
     const bool solid = element.kind == ElementKind::tetrahedron;
     const auto add = [&](const SystemTerm& term) {

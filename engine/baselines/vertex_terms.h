@@ -1,5 +1,5 @@
-// Computes what a vertex alone adds to g: its inertia, the spring of a soft handle, its row of the damping, and air.
-// Methods that treat elements one by one add the elements' forces themselves. The whole of g is in
+// Computes what a vertex alone adds to g: its inertia, the spring of a soft handle, seams, its row of the damping, and
+// air. Methods that treat elements one by one add the elements' forces themselves. The whole of g is in
 // sim/solver/objective.h.
 #pragma once
 
@@ -33,6 +33,15 @@ inline VertexTerms vertex_terms(const Model& model, const OpenWorkspace& w, cons
       terms.slope += rows.value[k] * apart;
     }
     terms.stiffness += theta * bending_diagonal(rows, v);
+  }
+  for (std::int32_t k = model.seams.empty() ? 0 : model.seams.begin[v];
+       !model.seams.empty() && k < model.seams.begin[v + 1]; ++k) {
+    const auto [number, factor] = model.seams.shares[k];
+    const SeamPair& pair = model.seams.pairs[number];
+    Vec3 apart = theta * pair.apart(x.data()) - w.seam_gaps.row(number).transpose();
+    if (theta < 1) apart += (1 - theta) * pair.apart(w.start_copy.data());
+    terms.slope += pair.stiffness * factor * apart;
+    terms.stiffness += theta * pair.stiffness * factor * factor;
   }
   if (!model.damping.begin.empty()) {
     for (std::int32_t k = model.damping.begin[v]; k < model.damping.begin[v + 1]; ++k) {

@@ -93,19 +93,25 @@ StepInputs Islands::inputs_of(const std::vector<std::size_t>& island, const Selv
   inputs.targets.resize(std::ssize(joined.handled), 3);
   inputs.middle_targets.resize(joined.scheme.theta < 1 ? std::ssize(joined.handled) : 0, 3);
   Eigen::Index row = 0;
-  bool any_air = false;
+  bool any_air = false, any_seams = false;
   for (const std::size_t b : island) {
     const StepInputs& own = bodies_[b]->inputs();
     inputs.targets.middleRows(row, own.targets.rows()) = own.targets;
     if (joined.scheme.theta < 1) inputs.middle_targets.middleRows(row, own.targets.rows()) = own.middle_targets;
     row += own.targets.rows();
     any_air |= !own.air.empty();
+    any_seams |= !own.seams.empty();
     inputs.solver.iterations = std::max(inputs.solver.iterations, own.solver.iterations);
   }
   inputs.air.clear();
   for (std::size_t p = 0; any_air && p < island.size(); ++p) {
     const std::vector<PartAir>& own = bodies_[island[p]]->inputs().air;
     inputs.air.push_back(own.empty() ? PartAir{} : own.front());
+  }
+  inputs.seams.clear();
+  for (std::size_t p = 0; any_seams && p < island.size(); ++p) {
+    const std::vector<SeamOpening>& own = bodies_[island[p]]->inputs().seams;
+    inputs.seams.push_back(own.empty() ? SeamOpening{} : own.front());
   }
   for (std::size_t s = 0; s < island.size(); ++s) {
     for (std::size_t p = 0; p < island.size(); ++p) {
@@ -188,7 +194,7 @@ Islands::Own& Islands::own_of(std::size_t body) {
   if (model.parts.front().solid) {
     own.surface = std::make_unique<OwnSurface>(tetrahedra_of(model), model.surface, model.rest, model.size);
   } else {
-    own.sheet = std::make_unique<OwnSheet>(*own.moving, model.rest);
+    own.sheet = std::make_unique<OwnSheet>(*own.moving, model.rest, joined_by_seams(model.seams.pairs));
   }
   own.touched = false;
   return own;

@@ -121,6 +121,7 @@ void MovingBody::prepare_step(int frame, int substep) {
   targets_at(span.to, span.change_to, inputs_.targets);
   if (model_.scheme.theta < 1)
     targets_at(0.5 * (span.from + span.to), 0.5 * (span.change_from + span.change_to), inputs_.middle_targets);
+  inputs_.seams = seams_between(span.from, span.to);
   collider_motions(set_, span, inputs_.collider_motions);
 }
 
@@ -128,6 +129,15 @@ Positions MovingBody::targets_at_start() const {
   Positions targets;
   targets_at(span_.from, span_.change_from, targets);
   return targets;
+}
+
+std::vector<SeamOpening> MovingBody::seams_at_start() const { return seams_between(span_.from, span_.from); }
+
+std::vector<SeamOpening> MovingBody::seams_between(double from, double to) const {
+  if (model_.seams.empty()) return {};
+  const double seam_time = body_.def.cloth->seam_time;
+  const double before = seam_opening(from, seam_time), after = seam_opening(to, seam_time);
+  return {{after, 0.5 * (before + after)}};
 }
 
 void MovingBody::targets_at(double time, double change, Positions& targets) const {

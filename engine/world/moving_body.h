@@ -44,6 +44,8 @@ class MovingBody {
 
   // Returns the targets of handles at the beginning of the prepared step, in the order of Model::handled [m].
   Positions targets_at_start() const;
+  // Returns how far the seams are open at the beginning of the prepared step; empty where there are none.
+  std::vector<SeamOpening> seams_at_start() const;
   // Makes the prepared step end where an earlier run's budget of time ended it, whatever budget this run has. cuts:
   // nothing where the earlier run had no budget for this step.
   void repeat(const std::optional<BudgetCuts>& cuts);
@@ -90,6 +92,9 @@ class MovingBody {
   void calm_down();
   // Computes the targets at a time [s], when so much is done of a change that is spread over the frame.
   void targets_at(double time, double change, Positions& targets) const;
+  // Computes how far the seams are open at the end of a step from one time to another [s], and at its middle, where it
+  // is the mean of both ends: implicit midpoint then ends where seams are meant to be.
+  std::vector<SeamOpening> seams_between(double from, double to) const;
   void switch_handles(double time);
   // Makes the description's handles hold as the state says. Returns false when they held so already.
   bool hold_as_state_says();

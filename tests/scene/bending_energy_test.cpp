@@ -29,7 +29,8 @@ TEST(BendingEnergy, IsInTheBalance) {
   Positions before;
   double counted = 0;
   const StepWatch watch{[&](std::size_t, int) {
-                          budget.know_springs(body.model(), body.targets_at_start(), body.state());
+                          budget.know_springs(body.model(), body.targets_at_start(), body.seams_at_start(),
+                                              body.state());
                           budget.before_step(body.model(), body.inputs(), body.state(), body.workspace());
                           before = body.state().x;
                         },

@@ -137,7 +137,7 @@ TEST_F(DeformingColliders, TheWorkThatASurfaceDoesIsInTheBalanceOfEnergies) {
     OpenWorkspace& w = body.workspace();
     w.prepare(body.model(), body.inputs().solver);
     if (q.rows() == 0) budget.start(body.model(), body.inputs(), body.state(), w);
-    budget.know_springs(body.model(), body.targets_at_start(), body.state());
+    budget.know_springs(body.model(), body.targets_at_start(), body.seams_at_start(), body.state());
     budget.before_step(body.model(), body.inputs(), body.state(), w);
     q = body.state().x;
   };

@@ -82,6 +82,25 @@ TEST(OwnSheet, CrossesItselfWhereOneEndIsTiltedThroughTheOther) {
   EXPECT_TRUE(strip.crosses(x));
 }
 
+// Two ends of a strip that are rolled onto each other, in its layer, are neighbours where a seam holds them.
+TEST(OwnSheet, IsNotTouchedWhereASeamHoldsItTogether) {
+  const ClothMesh cloth = cloth_grid({2 * 3.14159265358979 * radius, 0.15}, {40, 4});
+  const MovingSurface moving(cloth.surface.triangles, cloth.surface.points);
+  std::vector<JoinedVertices> sewn;
+  for (int row = 0; row < 5; ++row) sewn.emplace_back(41 * row, 41 * row + 40);
+  const OwnSheet open(moving, cloth.surface.points), closed(moving, cloth.surface.points, sewn);
+  Positions x = cloth.surface.points;
+  for (auto row : x.rowwise()) {
+    const double angle = (row[0] - cloth.surface.points.col(0).minCoeff()) * 1.005 / radius;
+    row = Eigen::RowVector3d(-radius * std::cos(angle), radius * std::sin(angle), row[1]);
+  }
+  MovingSurface moved = moving;
+  moved.set_end(x);
+  moved.set_start(x);
+  EXPECT_TRUE(open.overlaps(moved, x));
+  EXPECT_FALSE(closed.overlaps(moved, x));
+}
+
 // Distances by brute force, where nothing moves: no pair may be missed, and none is near in the mesh.
 TEST(OwnSheet, FindsAllPairsThatAreNear) {
   Strip strip;

@@ -24,7 +24,8 @@ inline double share_from_nothing(World& world, int frames, double& put_in) {
   double most = 0;
   const StepWatch watch{[&](std::size_t b, int) {
                           MovingBody& body = world.body(b);
-                          budgets[b].know_springs(body.model(), body.targets_at_start(), body.state());
+                          budgets[b].know_springs(body.model(), body.targets_at_start(), body.seams_at_start(),
+                                                  body.state());
                           budgets[b].before_step(body.model(), body.inputs(), body.state(), body.workspace());
                           before[b] = body.state().x;
                         },

@@ -98,7 +98,8 @@ void BodyRecorder::before_step(int substep) {
   if (is_measured(substep)) errors_.before_step(body_);
   OpenWorkspace& w = moving().workspace();
   w.prepare(model(), moving().inputs().solver);
-  if (!energy_budget_.knows_springs()) energy_budget_.know_springs(model(), moving().targets_at_start(), state());
+  if (!energy_budget_.knows_springs())
+    energy_budget_.know_springs(model(), moving().targets_at_start(), moving().seams_at_start(), state());
   energy_budget_.before_step(model(), moving().inputs(), state(), w);
   start_of_step_ = state().x;
 }
@@ -148,6 +149,12 @@ void BodyRecorder::measure_contact() {
   }
 }
 
+void BodyRecorder::measure_seams() {
+  Positions gaps;
+  open_gaps(model(), moving().inputs().seams, &SeamOpening::end, gaps);
+  row_->open_seam = widest_seam(model(), gaps, state().x) / mean_edge(model().surface, model().rest);
+}
+
 void BodyRecorder::end_frame() {
   const Zone zone("measure", body().def.name);
   const Deformation shape = deformation(model(), state().x, moving().workspace().threads);
@@ -155,6 +162,7 @@ void BodyRecorder::end_frame() {
   row_->inverted = shape.inverted;
   row_->collapsed = shape.collapsed;
   if (row_->contact) measure_contact();
+  if (!model().seams.empty()) measure_seams();
   const EnergyBalance& balance = energy_budget_.balance();
   row_->balance = {balance.total, balance.put_in, balance.from_nothing, balance.exchanged};
   if (model().flows()) row_->balance->flowed = balance.flowed;

@@ -75,6 +75,7 @@ class BodyRecorder {
   void start_energy_balance(const EnergyBalance& balance);
   void measure_errors();
   void measure_contact();
+  void measure_seams();
 
   World& world_;
   std::size_t body_;

@@ -169,6 +169,18 @@ void write_springs(const std::filesystem::path& folder, const std::vector<Spring
   write_table(folder / "spring_values.npy", values);
 }
 
+void write_seams(const std::filesystem::path& folder, const std::vector<SeamPair>& seams) {
+  Eigen::Matrix<std::int32_t, Eigen::Dynamic, 3, Eigen::RowMajor> vertices(seams.size(), 3);
+  Eigen::Matrix<double, Eigen::Dynamic, 7, Eigen::RowMajor> values(seams.size(), 7);
+  for (Eigen::Index p = 0; p < vertices.rows(); ++p) {
+    const SeamPair& pair = seams[std::size_t(p)];
+    vertices.row(p) << pair.vertex[0], pair.vertex[1], pair.vertex[2];
+    values.row(p) << pair.factor[0], pair.factor[1], pair.factor[2], pair.gap.transpose(), pair.stiffness;
+  }
+  write_table(folder / "seams.npy", vertices);
+  write_table(folder / "seam_values.npy", values);
+}
+
 // Reads a value of state.json.
 template <class T>
 T value_of(const nlohmann::json& json, const std::string& file, const char* key) {
@@ -220,6 +232,7 @@ void write_state(const std::filesystem::path& folder, const StepLabel& label, co
   write_list(folder / "mass.npy", problem.mass);
   if (!problem.body.springs.empty()) write_springs(folder, problem.body.springs);
   if (!problem.body.cloth.empty()) write_triangles(folder, problem.body.cloth);
+  if (!problem.seams.empty()) write_seams(folder, problem.seams);
   std::vector<std::int32_t> handled;
   std::vector<double> stiffness;
   for (const StepProblem::Handled& each : problem.handled) {

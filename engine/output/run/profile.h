@@ -83,6 +83,9 @@ struct BodyRow : StepRow {
   std::optional<double> skin_excess;
   std::optional<double> in_picture;  // share of its surface that lies within the picture's borders; where it is drawn
   std::optional<double> jiggle;      // jiggle of the body over its size; only for bodies with a handle
+  // How far two places that a seam joins are apart at most, beside what they are meant to be, over the mean length of
+  // an edge; only for bodies with seams.
+  std::optional<double> open_seam;
   std::optional<ContactRow> contact;
 };
 

@@ -77,6 +77,7 @@ Json json_of(const BodyRow& body) {
   if (body.skin_excess) row["skin_excess"] = *body.skin_excess;
   if (body.in_picture) row["in_picture"] = *body.in_picture;
   if (body.jiggle) row["jiggle"] = *body.jiggle;
+  if (body.open_seam) row["open_seam"] = *body.open_seam;
   row["stop_reason"] = body.stop_reason;
   if (!body.budget_cuts.empty()) row["budget_cuts"] = body.budget_cuts;
   return row;
@@ -176,6 +177,7 @@ BodyRow body_row(const Json& json) {
   read_if_there(json, "skin_excess", row.skin_excess);
   read_if_there(json, "in_picture", row.in_picture);
   read_if_there(json, "jiggle", row.jiggle);
+  read_if_there(json, "open_seam", row.open_seam);
   return row;
 }
 

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double much_energy = 0.2;       // of what was exchanged
 constexpr double much_in_picture = 0.6;   // less of a body's surface is a cut that one sees
+constexpr double much_open = 0.1;         // of an edge, between two places that a seam joins
 constexpr double much_skin_excess = 1.5;  // as many times the stretch of the elements
 constexpr double deep = 0.01;             // a depth that a viewer sees, over the body's size
 
@@ -113,6 +114,7 @@ void RowTally::add_body(const FrameRow& row, std::size_t number) {
   }
   tally.inverted = body.inverted.value_or(0);
   tally.collapsed = body.collapsed.value_or(0);
+  tally.open_seam = body.open_seam.value_or(0);
   if (body.unsolved)
     unsolved_.push_back({row.frame, body.name, body.error_estimate, body.motion_estimate,
                          body.iterations > 0 ? double(body.line_search) / body.iterations : 0});
@@ -300,6 +302,11 @@ std::vector<std::string> RowTally::warnings() const {
     if (body.collapsed > 0)
       list.push_back(fmt::format("body '{}' has {} without volume in its last frame", body.name,
                                  count_text(body.collapsed, "element")));
+    if (body.open_seam > much_open)
+      list.push_back(
+          fmt::format("a seam of body '{}' is open by {:.2g} of an edge in the last frame: something holds "
+                      "its sides apart, or the cloth is too small",
+                      body.name, body.open_seam));
   }
   if (first_other_ >= 0)
     list.push_back(fmt::format(

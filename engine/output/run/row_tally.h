@@ -36,6 +36,7 @@ struct BodyTally {
   int first_out = -1, first_cut = -1;
   double least_in_picture = 1;
   int inverted = 0, collapsed = 0;  // in the last frame
+  double open_seam = 0;             // the same
 };
 
 // Tallies what one collider did to one body.

@@ -9,7 +9,9 @@ struct BodyPassings::Cloth {
   MovingSurface moving;
   OwnSheet sheet;
 
-  Cloth(const Triangles& triangles, const Positions& rest) : moving(triangles, rest), sheet(moving, rest) {}
+  explicit Cloth(const Body& body)
+      : moving(body.cloth.surface.triangles, body.description.mesh.rest),
+        sheet(moving, body.description.mesh.rest, joined_by_seams(body.description.seams)) {}
 };
 
 BodyPassings::BodyPassings(const std::vector<Body>& bodies)
@@ -39,7 +41,7 @@ bool BodyPassings::crosses_itself(std::size_t body, const Positions& points) {
   const Body& of = bodies_[body];
   if (!of.def.cloth || left_out_[body] != 0 || !meets_itself(of.def)) return false;
   std::unique_ptr<Cloth>& cloth = cloths_[body];
-  if (cloth == nullptr) cloth = std::make_unique<Cloth>(of.cloth.surface.triangles, of.description.mesh.rest);
+  if (cloth == nullptr) cloth = std::make_unique<Cloth>(of);
   cloth->moving.set_end(points);
   cloth->moving.set_start(points);
   if (!cloth->sheet.crossing(cloth->moving, points)) return false;

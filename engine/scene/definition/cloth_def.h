@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -30,6 +31,14 @@ struct Names<ClothCut> {
   static constexpr std::array table = {Name{ClothCut::surface, "surface"}, Name{ClothCut::texture, "texture"}};
 };
 
+// Describes a seam: two stretches of a cloth's border that are drawn together.
+struct SeamDef {
+  // Points through which each stretch leads, from its first vertex to its last one. They are relative to the bounding
+  // box at rest (0 to 1); each stands for the border vertex that is nearest to it.
+  std::array<std::vector<Vec3>, 2> sides;
+  std::array<FilePlace, 2> places;  // of the sides in the file, for messages once the border is known
+};
+
 // Describes a cloth: a grid, the triangles of a mesh file, or those of a surface. It is made of a fabric, or of
 // springs.
 struct ClothDef {
@@ -39,9 +48,11 @@ struct ClothDef {
   std::optional<double> edge;  // wanted mean length of edges; the triangles stay as they are [m]
   Vec3 grain = Vec3(0, 1, 0);  // direction of the warp, in the frame of the file; a triangle has it in its plane
   ClothCut cut = ClothCut::surface;
-  std::optional<double> cut_scale;          // of one unit of the texture; nothing: as much as keeps the area [m]
-  FilePlace cut_place;                      // in the file, for messages once the surface is known
-  std::optional<double> sew;                // of vertices on the border that become one, the distance at most [m]
+  std::optional<double> cut_scale;  // of one unit of the texture; nothing: as much as keeps the area [m]
+  FilePlace cut_place;              // in the file, for messages once the surface is known
+  std::optional<double> sew;        // of vertices on the border that become one, the distance at most [m]
+  std::vector<SeamDef> seams;
+  double seam_time = 1;                     // from the start of the film, after which seams are closed [s]
   std::optional<FabricDef> fabric;          // nothing: it is made of springs
   bool curved = false;                      // a fabric bends from the shape that the file has; else it is flat at rest
   double stretch = 0, shear = 0, bend = 0;  // stiffness of a spring [N/m]

@@ -61,15 +61,40 @@ bool are_near(const Box& a, const Box& b, double margin) {
   return (a.lower - b.upper).max(b.lower - a.upper).maxCoeff() <= margin;
 }
 
+using Around = std::vector<std::vector<std::int32_t>>;  // by vertex, ascending
+
+// Lists what is around each vertex: the other ends of its edges, the vertices that it is sewn to, what is around those,
+// and what the other ends of its edges are sewn to.
+Around around_vertices(const std::vector<EdgeEnds>& edges, const std::vector<JoinedVertices>& sewn,
+                       Eigen::Index vertices) {
+  Around around(static_cast<std::size_t>(vertices));
+  for (const auto& [a, b] : edges) {
+    around[std::size_t(a)].push_back(b);
+    around[std::size_t(b)].push_back(a);
+  }
+  const Around by_edges = sewn.empty() ? Around{} : around;
+  const auto bring = [&](std::int32_t from, std::int32_t to) {
+    around[std::size_t(to)].push_back(from);
+    for (const std::int32_t beside : by_edges[std::size_t(from)]) {
+      around[std::size_t(to)].push_back(beside);
+      around[std::size_t(beside)].push_back(to);
+    }
+  };
+  for (const auto& [a, b] : sewn) {
+    bring(a, b);
+    bring(b, a);
+  }
+  for (std::vector<std::int32_t>& of_vertex : around) std::sort(of_vertex.begin(), of_vertex.end());
+  return around;
+}
+
 }  // namespace
 
-OwnSheet::OwnSheet(const MovingSurface& moving, const Positions& rest)
+OwnSheet::OwnSheet(const MovingSurface& moving, const Positions& rest, const std::vector<JoinedVertices>& sewn)
     : triangles_(moving.triangles()),
       rest_(rest),
       edges_(edges_by_triangle(triangles_)),
       own_begin_(std::size_t(triangles_.rows()) + 1, 0),
-      neighbours_begin_(std::size_t(rest.rows()) + 1, 0),
-      around_(2 * edges_.edges.size()),
       parts_(moving.sheet_parts()),
       layer_(sheet_layer(mean_edge(triangles_, rest))) {
   std::vector<char> is_listed(std::size_t(rest.rows()), 0);
@@ -79,16 +104,12 @@ OwnSheet::OwnSheet(const MovingSurface& moving, const Positions& rest)
     }
     own_begin_[std::size_t(t) + 1] = std::int32_t(own_.size());
   }
-  for (const EdgeEnds& edge : edges_.edges)
-    for (const std::int32_t v : edge) ++neighbours_begin_[std::size_t(v) + 1];
-  for (std::size_t v = 1; v < neighbours_begin_.size(); ++v) neighbours_begin_[v] += neighbours_begin_[v - 1];
-  std::vector<std::int32_t> next(neighbours_begin_.begin(), neighbours_begin_.end() - 1);
-  for (const auto& [a, b] : edges_.edges) {
-    around_[std::size_t(next[std::size_t(a)]++)] = b;
-    around_[std::size_t(next[std::size_t(b)]++)] = a;
+  const Around around = around_vertices(edges_.edges, sewn, rest.rows());
+  neighbours_begin_.push_back(0);
+  for (const std::vector<std::int32_t>& of_vertex : around) {
+    around_.insert(around_.end(), of_vertex.begin(), of_vertex.end());
+    neighbours_begin_.push_back(std::int32_t(around_.size()));
   }
-  for (std::size_t v = 0; v + 1 < neighbours_begin_.size(); ++v)
-    std::sort(around_.begin() + neighbours_begin_[v], around_.begin() + neighbours_begin_[v + 1]);
 }
 
 bool OwnSheet::are_neighbours(std::int32_t a, std::int32_t b) const {

@@ -11,13 +11,15 @@
 #include "geometry/triangles/moving_surface.h"
 #include "geometry/triangles/triangle_edges.h"
 #include "geometry/triangles/two_edges.h"
+#include "sim/model/seams.h"
 
 namespace supple {
 
 class OwnSheet {
  public:
-  // moving: the sheet's surface, which is to be passed in all that is asked. rest: n x 3 [m].
-  OwnSheet(const MovingSurface& moving, const Positions& rest);
+  // moving: the sheet's surface, which is to be passed in all that is asked. rest: n x 3 [m]. sewn: pairs of vertices
+  // that seams hold together; what is near one of them in the mesh is then near the other one, too.
+  OwnSheet(const MovingSurface& moving, const Positions& rest, const std::vector<JoinedVertices>& sewn = {});
 
   // Tells whether the sheet touches itself on the way that the surface goes in a step. q, x: start and end, n x 3 [m],
   // where the surface is; carried: the common motion [m].
@@ -86,8 +88,9 @@ class OwnSheet {
   Triangles triangles_;
   Positions rest_;
   EdgesByTriangle edges_;
-  std::vector<std::int32_t> own_begin_, own_;            // by triangle: vertices that no earlier triangle has
-  std::vector<std::int32_t> neighbours_begin_, around_;  // by vertex: the other ends of its edges, ascending
+  std::vector<std::int32_t> own_begin_, own_;  // by triangle: vertices that no earlier triangle has
+  // By vertex: the other ends of its edges, and those that seams bring there, ascending.
+  std::vector<std::int32_t> neighbours_begin_, around_;
   mutable MovingSurface::SheetParts parts_;
   mutable std::vector<PathBox> boxes_;  // by vertex, of the latest search
   double layer_;                        // [m]

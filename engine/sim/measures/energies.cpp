@@ -29,6 +29,23 @@ double spring_energy(const Model& model, const Positions& targets, const Positio
   return sum;
 }
 
+// Returns the work of seams that close from some gaps to others in a step from q to x [J]. By the forces where the step
+// ends it is exact for steps that are solved. Others leave the seams with other forces than those that moved the cloth:
+// then what the body gained is their work, up to the energy by which the seams are stretched when their gaps shrink at
+// q. gained: by the body in the step, without the work of all else.
+double work_of_closing(const Model& model, const Positions& before, const Positions& gaps, const Positions& q,
+                       const Positions& x, double gained) {
+  double work = 0, most = 0;
+  for (std::size_t p = 0; p < model.seams.pairs.size(); ++p) {
+    const SeamPair& pair = model.seams.pairs[p];
+    const auto row = static_cast<Eigen::Index>(p);
+    const Vec3 gap = gaps.row(row), closed = gap - before.row(row).transpose(), apart = pair.apart(q.data()) - gap;
+    work -= pair.stiffness * closed.dot(pair.apart(x.data()) - gap);
+    most -= pair.stiffness * closed.dot(apart + 0.5 * closed);
+  }
+  return std::clamp(gained, work, std::max(work, most));
+}
+
 // Returns the work over a step from q to x of a contact with another body, or of a body with itself, on the free
 // vertices of its stencil [J]. force: on the stencil's point. What pushes the point out gives energy. What stops it
 // takes no more than the other side receives, which moves away by less: the rest is lost in the impact. Without this, a
@@ -113,9 +130,11 @@ void EnergyBudget::count_bounces(const State& state) {
   known_bounces_ = state.bounces.given;
 }
 
-void EnergyBudget::know_springs(const Model& model, const Positions& targets, const State& state) {
+void EnergyBudget::know_springs(const Model& model, const Positions& targets, const std::vector<SeamOpening>& seams,
+                                const State& state) {
   if (knows_springs_) return;
-  parts_.springs = spring_energy(model, targets, state.x);
+  open_gaps(model, seams, &SeamOpening::end, seam_gaps_);
+  parts_.springs = spring_energy(model, targets, state.x) + seam_energy(model, seam_gaps_, state.x);
   lowest_ += parts_.springs;  // start() has left them out
   knows_springs_ = true;
 }
@@ -128,10 +147,11 @@ void EnergyBudget::before_step(const Model& model, const StepInputs& inputs, con
   parts_.elastic -= flowed;
   balance_.flowed = known_flow_ = state.flow.lost;
   if (model.id != model_) now.elastic = elastic_energy(model, w, state.x);
-  now.springs = spring_energy(model, inputs.targets, state.x);
+  know_springs(model, inputs.targets, inputs.seams, state);
+  now.springs = spring_energy(model, inputs.targets, state.x) + seam_energy(model, seam_gaps_, state.x);
   begin_air(model, inputs, state, w.air);
   now.gas = w.air.gas_energy(model, state.x);
-  know_springs(model, inputs.targets, state);
+  begin_seams(model, inputs, w);
   add_to_budget(now.total() - parts_.total());
   parts_ = now;
   model_ = model.id;
@@ -139,18 +159,25 @@ void EnergyBudget::before_step(const Model& model, const StepInputs& inputs, con
 
 void EnergyBudget::after_step(const Model& model, const StepInputs& inputs, const Positions& q, const State& state,
                               OpenWorkspace& w) {
+  const double total_before = parts_.total(), put_in_before = balance_.put_in;
+  const Positions gaps_before = seam_gaps_;
+  open_gaps(model, inputs.seams, &SeamOpening::end, seam_gaps_);
   if (model.free < model.vertices) add_to_budget(work_of_handles(model, q, w));
   if (!w.current.contacts.empty()) add_to_budget(work_of_contacts(inputs, q, w));
-  // before_step() has begun the air's forces, also for a body whose step was made in a model of several.
+  // before_step() has begun the forces of air and seams, also for a body whose step was made in a model of several.
   if (w.air.act()) add_to_budget(w.air.work(model, state.x));
   count_bounces(state);
   set_motion(model, state, inputs.gravity, parts_);
   // Backward Euler has evaluated the elements where the step ends; the step of an island, not those of each body.
   const bool is_known = model.scheme.theta == 1 && std::isfinite(w.current.elastic);
   parts_.elastic = is_known ? w.current.elastic + bending_energy(model, state.x) : elastic_energy(model, w, state.x);
-  parts_.springs = spring_energy(model, inputs.targets, state.x);
+  parts_.springs = spring_energy(model, inputs.targets, state.x) + seam_energy(model, seam_gaps_, state.x);
   parts_.gas = w.air.gas_energy(model, state.x);
   parts_.contact = contact_energy(w.current.contacts, state.x);
+  if (!model.seams.empty()) {
+    const double gained = parts_.total() - total_before - (balance_.put_in - put_in_before);
+    add_to_budget(work_of_closing(model, gaps_before, seam_gaps_, q, state.x, gained));
+  }
   sum_up();
 }
 
@@ -166,9 +193,10 @@ void EnergyBudget::sum_up() {
 void EnergyBudget::after_untangling(const Model& model, const StepInputs& inputs, const State& state,
                                     OpenWorkspace& w) {
   const double before = parts_.total();
+  open_gaps(model, inputs.seams, &SeamOpening::end, seam_gaps_);
   set_motion(model, state, inputs.gravity, parts_);
   parts_.elastic = elastic_energy(model, w, state.x);
-  parts_.springs = spring_energy(model, inputs.targets, state.x);
+  parts_.springs = spring_energy(model, inputs.targets, state.x) + seam_energy(model, seam_gaps_, state.x);
   parts_.gas = w.air.gas_energy(model, state.x);
   parts_.contact = contact_energy(w.current.contacts, state.x);
   add_to_budget(parts_.total() - before);

@@ -9,19 +9,20 @@ namespace supple {
 
 struct Energies {
   double kinetic = 0, elastic = 0, gravitational = 0;  // the last one against the rest shape [J]
-  double springs = 0;                                  // energy of the springs of soft handles [J]
+  double springs = 0;                                  // energy of the springs of soft handles, and of seams [J]
   double gas = 0;                                      // energy of gas in closed surfaces, against the rest shape [J]
   double contact = 0;                                  // energy of overlaps with colliders; not in the total [J]
   double total() const { return kinetic + elastic + gravitational + springs + gas; }
 };
-// Returns the energies without those of soft handles, gas and contact, which stay 0. Evaluates all elements; the
+// Returns the energies without those of soft handles, seams, gas and contact, which stay 0. Evaluates all elements; the
 // workspace must be prepared for the model.
 Energies energies(const Model& model, const State& state, const Vec3& gravity, OpenWorkspace& workspace);
 
 // Holds what a body has, and what it was given, since its film began [J].
 struct EnergyBalance {
   double total = 0;
-  double put_in = 0;        // by handles, contact, restitution, air and changed values; negative where more was taken
+  // By handles, seams that close, contact, restitution, air and changed values; negative where more was taken.
+  double put_in = 0;
   double from_nothing = 0;  // how far total - put_in is above its lowest value so far
   // The largest sum of kinetic, elastic and springs' energy so far, and all that was put in or taken; the other values
   // are compared with it.
@@ -37,9 +38,10 @@ class EnergyBudget {
   // the balance at this state.
   void start(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& workspace,
              const EnergyBalance& balance = {});
-  // Counts the energy of soft handles' springs before the first step, by the targets at that time; later steps find by
-  // themselves how far the targets have moved. Does nothing where this energy is known.
-  void know_springs(const Model& model, const Positions& targets, const State& state);
+  // Counts the energy of soft handles' springs and of seams before the first step, by the targets and openings at that
+  // time; later steps find by themselves how far these have moved. Does nothing where this energy is known.
+  void know_springs(const Model& model, const Positions& targets, const std::vector<SeamOpening>& seams,
+                    const State& state);
   bool knows_springs() const { return knows_springs_; }
   // Counts the energy of changes since the last step. To be called when the inputs of the next step are there.
   void before_step(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& workspace);
@@ -60,6 +62,7 @@ class EnergyBudget {
   void sum_up();
 
   Energies parts_;
+  Positions seam_gaps_;  // of the model's seams at the end of the last step (model/seams.h) [m]
   EnergyBalance balance_;
   double lowest_ = 0;         // the lowest total - put_in so far
   double known_flow_ = 0;     // Flow::lost when parts_ was computed
@@ -67,7 +70,7 @@ class EnergyBudget {
   double most_ = 0;           // the largest sum of the parts that are never negative
   double moved_ = 0;          // sum of all work, each as positive
   std::uint64_t model_ = 0;
-  bool knows_springs_ = false;  // whether parts_.springs is the springs' present energy
+  bool knows_springs_ = false;  // whether parts_.springs is the present energy of springs and seams
 };
 
 }  // namespace supple

@@ -18,8 +18,6 @@
 
 namespace supple {
 
-using JoinedVertices = std::pair<std::int32_t, std::int32_t>;
-
 // Lists the pairs of vertices that the triangles of a cloth and its bending join, each at least once, in the numbering
 // of its mesh.
 std::vector<JoinedVertices> joined_by_cloth(const BodyDescription& body);

@@ -56,7 +56,7 @@ void element_matrices(const Model& model, Threads* threads, const Positions& x, 
 namespace {
 
 // Returns the pairs of free vertices that share a block of the lower triangle: a vertex with itself, and vertices that
-// an element, a bend or a triangle of the surface joins. Sorted by the first, which is the smaller one.
+// an element, a bend, a seam or a triangle of the surface joins. Sorted by the first, which is the smaller one.
 std::vector<std::pair<std::int32_t, std::int32_t>> coupled_vertices(const Model& model) {
   std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
   const auto add = [&](std::int32_t column, std::int32_t row) {
@@ -72,6 +72,8 @@ std::vector<std::pair<std::int32_t, std::int32_t>> coupled_vertices(const Model&
   for (int v = 0; v < model.free && !model.bending.begin.empty(); ++v) {
     for (std::int32_t k = model.bending.begin[v]; k < model.bending.begin[v + 1]; ++k) add(v, model.bending.column[k]);
   }
+  for (const SeamPair& pair : model.seams.pairs)
+    pair.for_each_entry([&](std::int32_t row, std::int32_t column, double) { add(column, row); });
   // Contact couples the vertices of a triangle, which springs need not do.
   for (Eigen::Index t = 0; t < model.surface.rows(); ++t) {
     for (const std::int32_t row : model.surface.row(t)) {
@@ -81,6 +83,19 @@ std::vector<std::pair<std::int32_t, std::int32_t>> coupled_vertices(const Model&
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return pairs;
+}
+
+}  // namespace
+
+namespace {
+
+// Calls visit(row, column, value) for the numbers of seams in the lower triangle over the free vertices.
+template <class Visit>
+void for_each_seam_entry(const Model& model, const Visit& visit) {
+  for (const SeamPair& pair : model.seams.pairs)
+    pair.for_each_entry([&](std::int32_t row, std::int32_t column, double value) {
+      if (row >= column && row < model.free) visit(row, column, value);
+    });
 }
 
 }  // namespace
@@ -196,6 +211,9 @@ void ElasticHessian::assemble(const Model& model, const ElementMatrices& element
     if (!model.bending.begin.empty()) own += scale * bending_diagonal(model.bending, v);
     add(v, v, own * Mat3::Identity());
   }
+  for_each_seam_entry(model, [&](std::int32_t row, std::int32_t column, double value) {
+    add(row, column, scale * value * Mat3::Identity());
+  });
 }
 
 void ElasticHessian::multiply(const double* v, double* result) const {

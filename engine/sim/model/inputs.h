@@ -16,6 +16,7 @@
 #include "sim/linear/precision.h"
 #include "sim/model/air_inputs.h"
 #include "sim/model/budget_cuts.h"
+#include "sim/model/seams.h"
 #include "sim/model/start_matrix.h"
 
 namespace supple {
@@ -121,6 +122,7 @@ struct StepInputs {
   std::vector<Meeting> meetings = {};
   std::optional<BudgetCuts> repeated_cuts = {};  // cuts of an earlier run, in place of the clock, for the same bits
   Wind wind = {};
+  std::vector<SeamOpening> seams = {};  // by part; empty: seams are as open as at the start
   std::vector<PartAir> air = {};  // by part; empty: air acts on none and none holds gas, and nothing is paid for it
 };
 

@@ -180,6 +180,17 @@ void join_curvature(const std::vector<const Model*>& bodies, Model& joined) {
   if (!all.empty()) all.index(joined.vertices);
 }
 
+// Joins the seams, none of which joins two bodies.
+void join_seams(const std::vector<const Model*>& bodies, Model& joined) {
+  for (std::size_t p = 0; p < bodies.size(); ++p) {
+    for (SeamPair pair : bodies[p]->seams.pairs) {
+      for (std::int32_t& v : pair.vertex) v = joined_vertex(joined.parts[p], v);
+      joined.seams.pairs.push_back(pair);
+    }
+  }
+  if (!joined.seams.empty()) joined.seams.index(joined.vertices);
+}
+
 void join_systems(const std::vector<const Model*>& bodies, Model& joined) {
   std::vector<const CholeskyFactor*> factors;
   joined.matrix.resize(joined.free, joined.free);
@@ -253,6 +264,7 @@ Model join(const std::vector<const Model*>& bodies) {
   join_rows(bodies, &Model::damping, joined);
   join_rows(bodies, &Model::bending, joined);
   join_curvature(bodies, joined);
+  join_seams(bodies, joined);
   join_systems(bodies, joined);
   return joined;
 }

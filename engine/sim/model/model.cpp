@@ -33,6 +33,11 @@ void number_vertices(Model& model, const BodyDescription& body, const std::vecto
   }
   for (const Spring& spring : body.springs) join(spring.from, spring.to);
   for (const auto& [from, to] : joined_by_cloth(body)) join(from, to);
+  for (const SeamPair& pair : body.seams) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < i; ++j) join(pair.vertex[i], pair.vertex[j]);
+    }
+  }
   for (const std::int32_t i : fill_reducing_order(model.free, edges)) model.input_of.push_back(free_input[i]);
   for (std::int32_t v = 0; v < model.vertices; ++v) {
     if (held[v]) model.input_of.push_back(v);
@@ -43,6 +48,16 @@ void number_vertices(Model& model, const BodyDescription& body, const std::vecto
   for (std::int32_t i = 0; i < model.vertices; ++i) model.rest.row(i) = body.mesh.rest.row(model.input_of[i]);
   for (std::int32_t i = 0; i < model.vertices && !body.overhang.empty(); ++i)
     model.overhang.push_back(body.overhang[std::size_t(model.input_of[i])]);
+}
+
+// Gives the model its seams, without their stiffness.
+void number_seams(Model& model, const BodyDescription& body) {
+  if (body.seams.empty()) return;
+  model.seams.pairs = body.seams;
+  for (SeamPair& pair : model.seams.pairs) {
+    for (std::int32_t& v : pair.vertex) v = model.internal_of[v];
+  }
+  model.seams.index(model.vertices);
 }
 
 // Gives the model the places that touch colliders in the stead of its vertices.
@@ -202,6 +217,7 @@ Model build_model(const BodyDescription& body) {
   if (std::count(held.begin(), held.end(), 0) == 0)
     throw InputError(body.name, "every vertex is held: nothing is left to move");
   number_vertices(model, body, held);
+  number_seams(model, body);
   number_drawn(model, body);
   const double size = bounds_of(body.mesh.rest).diagonal();
   model.parts = {Part{.name = body.name,

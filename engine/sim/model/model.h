@@ -21,6 +21,7 @@
 #include "sim/materials/material.h"
 #include "sim/materials/membrane.h"
 #include "sim/model/rest_curvature.h"
+#include "sim/model/seams.h"
 #include "sim/model/system.h"
 #include "sim/model/time_scheme.h"
 
@@ -50,6 +51,7 @@ struct BodyDescription {
   std::vector<Spring> springs;      // beside the tetrahedra or, for cloth of springs, instead of them
   std::vector<FlatTriangle> cloth;  // the triangles of cloth that is a continuum, instead of both
   Fabric fabric;                    // of these triangles
+  std::vector<SeamPair> seams;      // between places on the border of these triangles, without stiffness
   bool curved = false;              // these triangles bend from the shape of the mesh at rest; else from a flat one
   Triangles surface;                // the surface that contact sees; empty: the boundary of the tetrahedra
   // How far what is drawn reaches beyond this surface, by vertex; contact with other bodies begins there. Empty:
@@ -181,6 +183,7 @@ struct Model : System {
   // Takes the place of Q in the energy and the forces of cloth that is curved at rest; it is empty where no cloth is. A
   // and the Hessians have Q all the same.
   RestCurvature curvature;
+  Seams seams;  // whose second derivative A has as a whole
 
   bool flows() const { return plastic.has_value() || creep.has_value(); }
   ElementChunk chunk(int index) const;

@@ -29,6 +29,7 @@ class ModelValues {
  private:
   void add_up_elastic(Model& model);
   void add_bending(Model& model);
+  void add_seams(Model& model);
   Eigen::SparseMatrix<double> system_matrix(Model& model, double damping) const;
 
   std::vector<ElementRecord> elements_;

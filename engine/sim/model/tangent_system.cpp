@@ -133,6 +133,13 @@ void TangentSystem::Parts::add_vertices(const Model& of) {
     }
     diagonal[v] = values[own];
   }
+  for (const SeamPair& pair : of.seams.pairs)
+    pair.for_each_entry([&](std::int32_t row, std::int32_t column, double value) {
+      if (row < column || column >= of.free) return;
+      const std::int32_t at = place_of(of, row, column);
+      (at >= 0 ? values[at] : couplings[~at].value) += springs * value;
+      if (row == column) diagonal[row] = values[at];
+    });
 }
 
 TangentSystem::TangentSystem() = default;

@@ -16,6 +16,11 @@ void begin_air(const Model& model, const StepInputs& inputs, const State& state,
   air.begin(model, inputs, state.x, state.time + model.scheme.theta * model.time_step);
 }
 
+void begin_seams(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
+  if (model.seams.empty()) return;
+  open_gaps(model, inputs.seams, model.scheme.theta < 1 ? &SeamOpening::middle : &SeamOpening::end, w.seam_gaps);
+}
+
 namespace {
 
 // Held vertices are at their targets in both iterates; soft handles pull towards theirs.
@@ -44,6 +49,7 @@ void begin_step(const Model& model, const StepInputs& inputs, const State& state
   SUPPLE_CHECK(state.v.rows(), ==, model.vertices);
   inertial_prediction(model, inputs, state, w.y);
   begin_air(model, inputs, state, w.air);
+  begin_seams(model, inputs, w);
   w.start_positions = &state.x;
   w.correction.threads = w.threads;
   w.second_level_serves = false;

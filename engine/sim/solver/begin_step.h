@@ -16,6 +16,9 @@ void inertial_prediction(const Model& model, const StepInputs& inputs, const Sta
 // forces.
 void begin_air(const Model& model, const StepInputs& inputs, const State& state, AirForces& air);
 
+// Writes how far the seams are meant to be open where the integrator evaluates forces into the workspace.
+void begin_seams(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace);
+
 // Makes the first part of step(): writes y, and the targets of handles in place of their y, into the workspace. Also
 // leaves the current iterate's x = y.
 void begin_step(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& workspace);

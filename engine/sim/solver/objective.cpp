@@ -216,6 +216,30 @@ void add_vertices(const Model& model, OpenWorkspace& workspace, const VertexTerm
   }
 }
 
+// Says where seams are evaluated, n x 3: for a point and for a reference (null: none).
+struct SewnPlaces {
+  const double* place;
+  const double* reference;
+};
+
+// Adds what neither an element nor a vertex alone has: air, seams, what held vertices do, and contacts.
+void add_joint_terms(const Model& model, OpenWorkspace& workspace, const VertexTerms& terms, const SewnPlaces& sewn,
+                     const Iterate& at, const std::vector<Contact>& planes, const Iterate* reference,
+                     Positions* gradient, Change& change) {
+  const Positions* reference_x = reference != nullptr ? &reference->x : nullptr;
+  const auto add = [&change](const auto& part) {
+    change.value += part.value;
+    change.slope += part.slope;
+  };
+  if (workspace.air.act())
+    add(workspace.air.add(model, workspace.threads, at.x, reference_x, workspace.direction, gradient));
+  if (!model.seams.empty())
+    add(add_seams(model, workspace.seam_gaps, sewn.place, sewn.reference, workspace.direction, gradient));
+  if (terms.damped && reference == nullptr) terms.add_held_drag(change.value);
+  if (terms.place != nullptr && reference == nullptr) terms.add_held_bending(change.value);
+  if (!planes.empty()) add(add_contacts(planes, at.x, reference_x, workspace.direction, gradient));
+}
+
 // Computes g at an iterate with the contacts of `planes`, or its difference from g at a reference (null: none).
 Change evaluate_against(const Model& model, OpenWorkspace& workspace, Iterate& at, const std::vector<Contact>& planes,
                         const Iterate* reference, Wanted wanted) {
@@ -231,9 +255,9 @@ Change evaluate_against(const Model& model, OpenWorkspace& workspace, Iterate& a
                                   reference != nullptr ? &reference->curved : nullptr);
   Positions* gradient = wanted == Wanted::gradient ? &at.gradient : nullptr;
   const Positions* reference_x = reference != nullptr ? &reference->x : nullptr;
-  const bool bends = !model.bending.begin.empty();
+  const bool bends = !model.bending.begin.empty(), sewn = !model.seams.empty();
   if (bends) at.bent.resize(model.free, 3);
-  if (bends && theta < 1 && reference != nullptr)
+  if ((bends || sewn) && theta < 1 && reference != nullptr)
     workspace.reference_middle = theta * reference->x + (1 - theta) * workspace.start_copy;
   const auto place_of = [&](const Positions& x, const Positions& middle) {
     return theta < 1 ? middle.data() : x.data();
@@ -250,18 +274,9 @@ Change evaluate_against(const Model& model, OpenWorkspace& workspace, Iterate& a
                           bends ? at.bent.data() : nullptr,
                           bends && reference != nullptr ? reference->bent.data() : nullptr};
   add_vertices(model, workspace, terms, gradient, change);
-  if (workspace.air.act()) {
-    const AirChange air = workspace.air.add(model, workspace.threads, at.x, reference_x, workspace.direction, gradient);
-    change.value += air.value;
-    change.slope += air.slope;
-  }
-  if (terms.damped && reference == nullptr) terms.add_held_drag(change.value);
-  if (bends && reference == nullptr) terms.add_held_bending(change.value);
-  if (!planes.empty()) {
-    const ContactChange contacts = add_contacts(planes, at.x, reference_x, workspace.direction, gradient);
-    change.value += contacts.value;
-    change.slope += contacts.slope;
-  }
+  const SewnPlaces sewn_places{place_of(at.x, workspace.middle),
+                               reference != nullptr ? place_of(reference->x, workspace.reference_middle) : nullptr};
+  add_joint_terms(model, workspace, terms, sewn_places, at, planes, reference, gradient, change);
   return change;
 }
 
@@ -341,7 +356,7 @@ double work_on_held(const Model& model, OpenWorkspace& workspace, const Position
     }
     for (int k = 0; k < 3; ++k) work += row[k] * (x(v, k) - q(v, k));
   }
-  return work;
+  return model.seams.empty() ? work : work + seam_work_on_held(model, workspace.seam_gaps, x, q);
 }
 
 }  // namespace supple

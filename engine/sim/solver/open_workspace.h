@@ -33,7 +33,8 @@ struct OpenWorkspace {
   const Positions* start_positions = nullptr;  // q, where the step starts: the caller's, n x 3 [m]
   Positions start_copy;                        // a copy of q, n x 3 [m]; empty unless the model's forces depend on q
   AirForces air;                               // of the step; without any where StepInputs::air is empty
-  Positions target;  // targets of soft handles, by free vertex, n_free x 3 [m]; empty without soft handles
+  Positions target;     // targets of soft handles, by free vertex, n_free x 3 [m]; empty without soft handles
+  Positions seam_gaps;  // what the seams' places are meant to be apart where forces are evaluated, pairs x 3 [m]
 
   // The solver is at the current iterate, and tries the trial iterate.
   Iterate current, trial;

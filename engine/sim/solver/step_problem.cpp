@@ -32,6 +32,13 @@ StepProblem problem_of(const BodyDescription& body, const Model& model, const St
   }
   problem.targets = inputs.targets(rows, Eigen::all);
   if (model.scheme.theta < 1) problem.middle_targets = inputs.middle_targets(rows, Eigen::all);
+  Positions gaps;
+  open_gaps(model, inputs.seams, model.scheme.theta < 1 ? &SeamOpening::middle : &SeamOpening::end, gaps);
+  for (std::size_t p = 0; p < model.seams.pairs.size(); ++p) {
+    SeamPair& pair = problem.seams.emplace_back(model.seams.pairs[p]);
+    pair.gap = gaps.row(Eigen::Index(p));
+    for (std::int32_t& v : pair.vertex) v = model.input_of[v];
+  }
   for (std::size_t c = 0; has_colliders(inputs) && c < inputs.colliders->size(); ++c) {
     const Collider& collider = (*inputs.colliders)[c];
     problem.colliders.push_back({collider.name, collider.thickness, collider.friction, inputs.collider_motions[c]});

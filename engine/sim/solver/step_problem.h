@@ -28,6 +28,9 @@ struct StepProblem {
   Positions targets;         // at the end of the step, by `handled` [m]
   Positions middle_targets;  // halfway, where implicit midpoint's springs end [m]; empty for backward Euler
 
+  // With their stiffness, and with the gap that is meant where the step evaluates forces in place of that at the start.
+  std::vector<SeamPair> seams;
+
   struct Obstacle {
     std::string name;
     double thickness;  // [m]
