@@ -67,6 +67,13 @@ std::string handle_text(const Body& body, std::size_t index) {
                      center.x(), center.y(), center.z(), times);
 }
 
+// Says what a seam joins.
+std::string seam_text(const Body::Seam& seam) {
+  return fmt::format(
+      "  seam            {} pairs, {:.3g} m of border with {:.3g} m, up to {:.2g} m apart at the start\n", seam.pairs,
+      seam.length[0], seam.length[1], seam.widest);
+}
+
 std::string body_text(const MovingBody& moving, const DrawnBody& drawn) {
   const Body& body = moving.body();
   const Model& model = moving.model();
@@ -85,6 +92,7 @@ std::string body_text(const MovingBody& moving, const DrawnBody& drawn) {
   const std::string skin = skin_text(body, drawn);
   if (!skin.empty()) text += fmt::format("  skin            {}\n", skin);
   text += fmt::format("  mass that moves {:.4g} kg\n", model.total_mass);
+  for (const Body::Seam& seam : body.seams) text += seam_text(seam);
   for (std::size_t h = 0; h < body.description.handles.size(); ++h) text += handle_text(body, h);
   text +=
       fmt::format("  solver          {}, {} iterations a step, {} numbers in the factor\n",

@@ -259,7 +259,7 @@ keys = [{{ t = 0 }}]
 attach = {{}}
 [[body]]
 name = "cloth"
-cloth = {{ stretch = 1 }}
+cloth = {{ stretch = 1, seams = [{{}}] }}
 [[body]]
 name = "preset"
 box = {{}}

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "scene/building/cloth_cut.h"
 #include "scene/building/overlaps.h"
+#include "scene/building/seam_pairs.h"
 #include "scene/building/selected_vertices.h"
 #include "scene/building/skin_offsets.h"
 #include "scene/building/unplaced_body.h"
@@ -271,6 +272,7 @@ std::vector<Body> assemble(const SceneDef& scene, const SlowWork& work) {
     }
   }
   find_overlaps(scene, bodies, problems);
+  for (Body& body : bodies) add_seams(body, problems);
   std::vector<Problem> unique;
   for (Problem& problem : problems) {
     const bool seen =

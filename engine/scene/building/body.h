@@ -55,6 +55,13 @@ struct Body {
     bool between;  // only places between the body's vertices are inside
   };
 
+  // Describes a seam of a cloth.
+  struct Seam {
+    std::array<double, 2> length;  // of its sides at rest [m]
+    std::size_t pairs;             // of places that it joins
+    double widest;                 // gap between two of these places at the start [m]
+  };
+
   BodyDef def;
   BodyDescription description;       // the mesh as placed, and its handles
   std::vector<KeyedMotion> motions;  // by handle
@@ -63,6 +70,7 @@ struct Body {
   std::string source;                // the mesh or shape file, or what it is made of
   std::vector<SourceFile> files;     // the files from which its mesh and looks were read
   std::vector<std::string> regions;  // names by tag
+  std::vector<Seam> seams;           // of a cloth, in the order of its definition
   double volume = 0;                 // of its tetrahedra at rest [m^3]
   bool holds_gas = false;            // its surface was found to be closed, which a pressure needs
   ClothMesh cloth;

@@ -12,6 +12,7 @@
 #include "scene/building/cloth_cut.h"
 #include "scene/building/collision_set.h"
 #include "scene/building/overlaps.h"
+#include "scene/building/seam_pairs.h"
 #include "scene/building/solver_warnings.h"
 #include "scene/building/thin_bodies.h"
 #include "scene/definition/field_def.h"
@@ -381,6 +382,10 @@ void warn_of_body(const SceneDef& scene, const Body& body, std::vector<Warning>&
   warn_of_slivers(body, q, list);
   warn_of_handles(body, mass * scene.gravity.norm(), box.diagonal(), list);
   warn_of_cut(body, list);
+  for (std::size_t s = 0; s < body.seams.size(); ++s) {
+    if (std::string uneven = uneven_seam_text(body, s); !uneven.empty())
+      list.push_back(at(WarningKind::seam, body.def.cloth->seams[s].places[0], std::move(uneven)));
+  }
   warn_of_stiffness(scene, body, list);
   if (!body.overlaps.empty() && !body.from && body.def.start_inside != StartInside::push)
     list.push_back(at(WarningKind::inside, body.def.place, overlap_text(body)));

@@ -23,6 +23,7 @@ enum class WarningKind {
   overlap,    // two bodies are in the same place (body_passings.h, body_depths.h; `inside`: overlaps.h)
   skin,       // the skin reaches far beyond the elements
   cut,        // a cloth starts stretched far from the flat pieces that it was cut from
+  seam,       // the sides of a seam have very different lengths
   unsolved,   // steps are left unsolved; known at the end of a film
 };
 template <>
@@ -35,7 +36,8 @@ struct Names<WarningKind> {
       Name{WarningKind::size, "size"},         Name{WarningKind::regions, "regions"},
       Name{WarningKind::thin, "thin"},         Name{WarningKind::delay, "delay"},
       Name{WarningKind::overlap, "overlap"},   Name{WarningKind::skin, "skin"},
-      Name{WarningKind::cut, "cut"},           Name{WarningKind::unsolved, "unsolved"}};
+      Name{WarningKind::cut, "cut"},           Name{WarningKind::seam, "seam"},
+      Name{WarningKind::unsolved, "unsolved"}};
 };
 
 }  // namespace supple

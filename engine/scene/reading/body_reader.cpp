@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "scene/reading/model_scene.h"
+#include "scene/reading/seam_reader.h"
 #include "scene/reading/selection_reader.h"
 #include "scene/reading/table_readers.h"
 
@@ -184,6 +185,7 @@ std::optional<ClothDef> read_cloth(const ConfigTable& body) {
     cloth.fabric = read_fabric(body);
   }
   read_curved(*table, cloth);
+  read_seams(*table, cloth);
   return cloth;
 }
 
