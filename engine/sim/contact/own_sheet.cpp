@@ -51,7 +51,7 @@ double distance_of_edges(const TwoEdges& edges) {
 
 // Returns the box around two boxes.
 template <class Box>
-Box around(const Box& a, const Box& b) {
+Box around_both(const Box& a, const Box& b) {
   return {a.lower.min(b.lower), a.upper.max(b.upper)};
 }
 
@@ -178,7 +178,7 @@ bool OwnSheet::any_pair(const MovingSurface& moving, double margin, const Vec3& 
   find_boxes(carried, q, x);
   const auto box_of = [&](const auto& vertices) {
     PathBox box = boxes_[std::size_t(vertices[0])];
-    for (std::size_t i = 1; i < vertices.size(); ++i) box = around(box, boxes_[std::size_t(vertices[i])]);
+    for (std::size_t i = 1; i < vertices.size(); ++i) box = around_both(box, boxes_[std::size_t(vertices[i])]);
     return box;
   };
   const auto any_point = [&](std::int32_t of, std::int32_t t) {

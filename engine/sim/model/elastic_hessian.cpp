@@ -85,10 +85,6 @@ std::vector<std::pair<std::int32_t, std::int32_t>> coupled_vertices(const Model&
   return pairs;
 }
 
-}  // namespace
-
-namespace {
-
 // Calls visit(row, column, value) for the numbers of seams in the lower triangle over the free vertices.
 template <class Visit>
 void for_each_seam_entry(const Model& model, const Visit& visit) {
