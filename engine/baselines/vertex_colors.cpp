@@ -45,9 +45,8 @@ std::vector<int> greedy_colors(const Model& model, const std::vector<ElementView
       const auto other = static_cast<std::size_t>(model.bending.column[k]);
       if (other < v) seen[color[other]] = v;
     }
-    for (std::int32_t k = model.seams.empty() ? 0 : model.seams.begin[v];
-         !model.seams.empty() && k < model.seams.begin[v + 1]; ++k) {
-      for (const std::int32_t other : model.seams.pairs[model.seams.shares[k].pair].vertex)
+    for (const Seams::Share& share : model.seams.of(v)) {
+      for (const std::int32_t other : model.seams.pairs[std::size_t(share.pair)].vertex)
         if (std::size_t(other) < v) seen[color[std::size_t(other)]] = v;
     }
     const auto unseen = std::find_if(seen.begin(), seen.end(), [&](std::size_t last) { return last != v; });

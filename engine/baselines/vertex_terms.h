@@ -34,9 +34,7 @@ inline VertexTerms vertex_terms(const Model& model, const OpenWorkspace& w, cons
     }
     terms.stiffness += theta * bending_diagonal(rows, v);
   }
-  for (std::int32_t k = model.seams.empty() ? 0 : model.seams.begin[v];
-       !model.seams.empty() && k < model.seams.begin[v + 1]; ++k) {
-    const auto [number, factor] = model.seams.shares[k];
+  for (const auto& [number, factor] : model.seams.of(std::size_t(v))) {
     const SeamPair& pair = model.seams.pairs[number];
     Vec3 apart = theta * pair.apart(x.data()) - w.seam_gaps.row(number).transpose();
     if (theta < 1) apart += (1 - theta) * pair.apart(w.start_copy.data());

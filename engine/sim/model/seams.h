@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -51,6 +52,11 @@ struct Seams {
   std::vector<Share> shares;
 
   bool empty() const { return pairs.empty(); }
+  // Returns the shares of a vertex.
+  std::span<const Share> of(std::size_t vertex) const {
+    if (empty()) return {};
+    return {shares.data() + begin[vertex], std::size_t(begin[vertex + 1] - begin[vertex])};
+  }
   // Lists the shares of each vertex; to be called once the pairs are there.
   void index(int vertices);
 };
