@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/contact/lagged_friction.h"
+
 namespace supple {
 namespace {
 
@@ -18,6 +20,17 @@ Vec3 slip(const Contact& contact, const Vec3& x) {
 }
 
 }  // namespace
+
+int renew_contacts(const Positions& x, std::vector<Contact>& contacts) {
+  int changes = 0;
+  for (Contact& contact : contacts) {
+    const bool touched = contact.depth > 0;
+    contact.depth = std::max(0.0, -gap(contact, x));
+    changes += touched != (contact.depth > 0);
+    renew_friction(contact);
+  }
+  return changes;
+}
 
 double friction_energy(const std::vector<Contact>& contacts, const Positions& point) {
   double sum = 0;

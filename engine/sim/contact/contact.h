@@ -34,8 +34,10 @@ struct Contact {
   // Names the point in this step: it is the vertex, or the first vertex of an edge that touches another edge. A point
   // between vertices that touches a collider has a number above those of all vertices.
   std::int32_t number = 0;
-  // Friction is lagged; it opposes u - origin along the plane.
-  double friction = 0;  // coefficient times normal force [N]
+  // Friction is lagged; it opposes u - origin along the plane (lagged_friction.h).
+  double friction = 0;       // coefficient times normal force [N]
+  double coefficient = 0;    // of friction
+  double most_pressing = 0;  // no larger normal force causes friction in this step [N]
   // This is where u would be if the point had moved with the other side [m]. Colliders without friction leave it at 0.
   Vec3 origin = Vec3::Zero();
   double stick = 0;  // friction is whole above this slip in a step [m]
@@ -45,6 +47,10 @@ struct Contact {
 inline double gap(const Contact& contact, const Positions& x) {
   return contact.normal.dot(contact.stencil.at(x)) - contact.offset;
 }
+
+// Renews contacts whose planes stay as they are at other positions: their depths, and the friction that follows from
+// them. Returns how many began or ceased to touch.
+int renew_contacts(const Positions& x, std::vector<Contact>& contacts);
 
 // Returns the share of friction in the energy [J].
 double friction_energy(const std::vector<Contact>& contacts, const Positions& point);

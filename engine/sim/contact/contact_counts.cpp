@@ -52,16 +52,20 @@ void forget_counts(ContactWork& work) {
   work.set_before = work.set_now = 0;
 }
 
-void count_contacts(const std::vector<Contact>& before, const std::vector<Contact>& now, ContactWork& work) {
+void count_contacts(int changes, const std::vector<Contact>& now, ContactWork& work) {
   work.counts.touching =
       static_cast<int>(std::count_if(now.begin(), now.end(), [](const Contact& k) { return k.depth > 0; }));
   const std::uint64_t set = set_of(now);
   if (work.set_now != 0) {
-    work.counts.changes += changes_between(before, now);
+    work.counts.changes += changes;
     work.counts.cycles += set == work.set_before && set != work.set_now;
   }
   work.set_before = work.set_now;
   work.set_now = set;
+}
+
+void count_contacts(const std::vector<Contact>& before, const std::vector<Contact>& now, ContactWork& work) {
+  count_contacts(work.set_now == 0 ? 0 : changes_between(before, now), now, work);
 }
 
 }  // namespace supple

@@ -49,6 +49,7 @@ struct ContactWork {
   // How deep the vertices that touch are pressed into colliders when a film begins, colliders x free; empty in every
   // other step, and where nothing touches (solver/first_forces.h) [m].
   std::vector<double> pressed_at_first;
+  double kept_way = 0;                    // contacts are found anew where a vertex has moved further since [m]
   const Positions* begin = nullptr;       // q of the step, the caller's, n x 3 [m]
   const Positions* prediction = nullptr;  // y of the step, the caller's, n x 3 [m]
   std::uint64_t set_before = 0, set_now = 0;
@@ -94,6 +95,8 @@ int most_touched(const Model& model, const Part& part, const std::vector<Contact
 
 // Counts what changed between the contacts of two iterates, the later of which has just been accepted.
 void count_contacts(const std::vector<Contact>& before, const std::vector<Contact>& now, ContactWork& work);
+// Counts the contacts of an iterate, where it is known how many began or ceased to touch.
+void count_contacts(int changes, const std::vector<Contact>& now, ContactWork& work);
 
 // Forgets the counts of the step so far: counting begins with the next iterate.
 void forget_counts(ContactWork& work);

@@ -89,6 +89,14 @@ void begin_surfaces(const Model& model, const StepInputs& inputs, const Position
   }
 }
 
+double thinnest_layer(const StepInputs& inputs, SurfaceWork& all) {
+  double least = infinity;
+  if (inputs.meetings.empty()) return least;
+  for (const Work::Surface& surface : all.parts().surfaces)
+    if (surface.layer > 0) least = std::min(least, surface.layer);
+  return least;
+}
+
 namespace {
 
 // Lists what a search finds of each point in turn, on all threads; results do not depend on their number. The lists are

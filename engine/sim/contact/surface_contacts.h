@@ -40,6 +40,10 @@ class SurfaceWork {
 void begin_surfaces(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
                     SurfaceWork& work);
 
+// Returns the thickness of the thinnest layer of the sheets that touch something, on one side; infinite where there are
+// none [m].
+double thinnest_layer(const StepInputs& inputs, SurfaceWork& work);
+
 // Finds the contacts between parts at x, ordered by surface and number of the point, and adds them to a list.
 void find_surface_contacts(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
                            const Positions& x, Threads* threads, SurfaceWork& work, std::vector<Contact>& found);

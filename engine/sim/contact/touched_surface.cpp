@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "sim/contact/lagged_force.h"
+#include "sim/contact/lagged_friction.h"
 #include "sim/contact/reach.h"
 #include "sim/contact/usual_depth.h"
 #include "sim/model/joined_model.h"
@@ -121,8 +121,8 @@ void TouchedSurface::add(const ContactStencil& stencil, std::int32_t number, con
   contact.origin = contact.stencil.at(q_);
   if (meeting_.friction > 0) {
     contact.stick = solver_.contact.stick * size_ * h;
-    contact.friction = meeting_.friction * lagged_force(contact, deep > 0 ? 0 : -field, -gap(contact, y_),
-                                                        model_.scheme.inertia * mass / (h * h));
+    begin_friction(meeting_.friction, deep > 0 ? 0 : -field, -gap(contact, y_), model_.scheme.inertia * mass / (h * h),
+                   contact);
   }
   list.push_back(contact);
 }

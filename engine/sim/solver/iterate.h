@@ -15,7 +15,9 @@ struct Iterate {
   AlignedVector<double> energy;   // of the elements, by lane [J]
   Positions bent;                 // forces of bending, n_free x 3 [N]; empty without bending
   std::vector<double> curved;     // energies of RestCurvature, by triangle [J]; empty without such cloth
-  std::vector<Contact> contacts;  // found at x; empty without colliders
+  std::vector<Contact> contacts;  // found at x, or so near it that they were kept; empty without colliders
+  double moved = 0;               // no vertex has moved further since they were found [m]
+  bool keeps_contacts = false;    // a trial iterate has those of the current one, which holds them until it is left
   double g = 0;                   // the objective at x, with these contacts [J]
   double elastic = 0;             // the share in g of the elements [J]; not finite: not known
 };

@@ -81,10 +81,26 @@ Search find_next(const Model& model, const StepInputs& inputs, OpenWorkspace& w,
   }
 }
 
-// Replaces the contacts that the search used with those found at the trial point. Corrects the trial's gradient;
-// returns the change of its objective [J].
+// Gives the trial iterate the contacts that the search used, renewed there. Corrects its gradient; returns the change
+// of its objective, which is one of friction [J].
+double keep_contacts(OpenWorkspace& w) {
+  Iterate& to = w.trial;
+  to.keeps_contacts = false;
+  to.contacts.swap(w.current.contacts);
+  double jump = 0;
+  const bool rub = std::ranges::any_of(to.contacts, [](const Contact& contact) { return contact.coefficient > 0; });
+  if (rub) jump -= add_contacts(to.contacts, to.x, nullptr, w.direction, &to.gradient, -1).value;
+  const int changes = renew_contacts(to.x, to.contacts);
+  if (rub) jump += add_contacts(to.contacts, to.x, nullptr, w.direction, &to.gradient).value;
+  count_contacts(changes, to.contacts, w.contact);
+  return jump;
+}
+
+// Replaces the contacts that the search used with those of the trial point. Corrects the trial's gradient; returns the
+// change of its objective [J].
 double take_contacts(OpenWorkspace& w) {
   Iterate& to = w.trial;
+  if (to.keeps_contacts) return keep_contacts(w);
   double jump = 0;
   jump -= add_contacts(w.current.contacts, to.x, nullptr, w.direction, &to.gradient, -1).value;
   jump += add_contacts(to.contacts, to.x, nullptr, w.direction, &to.gradient).value;

@@ -26,7 +26,8 @@ bool decreases_by_slope(const Change& change, double slope, double armijo, doubl
 // are lagged, does not count here.
 bool contacts_accept(const Model& model, const StepInputs& inputs, OpenWorkspace& w, double change, double noise) {
   if (!may_touch(inputs)) return true;
-  find_contacts_of(model, inputs, w, w.trial);
+  find_trial_contacts(model, inputs, w);
+  if (w.trial.keeps_contacts) return true;
   const double jump = contact_energy(w.trial.contacts, w.trial.x) - contact_energy(w.current.contacts, w.trial.x);
   return jump <= 0 || change + jump <= noise;
 }

@@ -1,11 +1,24 @@
 #include "sim/solver/place_iterate.h"
 
+#include <cmath>
+
 namespace supple {
 
 void find_contacts_of(const Model& model, const StepInputs& inputs, OpenWorkspace& w, Iterate& iterate) {
   if (!may_touch(inputs)) return;
   const TimedPhase timed(w.clock, Phase::collide, "find contacts");
   find_contacts(model, inputs, iterate.x, w.threads, w.contact, iterate.contacts);
+  iterate.moved = 0;
+  iterate.keeps_contacts = false;
+}
+
+void find_trial_contacts(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
+  if (w.contact.kept_way == 0) return find_contacts_of(model, inputs, w, w.trial);
+  const double way = std::sqrt((w.trial.x - w.current.x).rowwise().squaredNorm().maxCoeff());
+  const double moved = w.current.moved + way;
+  if (moved >= w.contact.kept_way) return find_contacts_of(model, inputs, w, w.trial);
+  w.trial.moved = moved;
+  w.trial.keeps_contacts = true;
 }
 
 void set_trial(const Model& model, OpenWorkspace& w, double alpha) {

@@ -9,6 +9,10 @@ namespace supple {
 // Finds the contacts of an iterate; does nothing without colliders.
 void find_contacts_of(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, Iterate& iterate);
 
+// Finds the contacts of the trial iterate. Where no vertex has moved far since those of the current one were found,
+// they are kept instead (Iterate::keeps_contacts): what rests on something hardly moves from iterate to iterate.
+void find_trial_contacts(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace);
+
 // Evaluates workspace.current with the contacts found there, and appends the value to the report's objectives.
 void evaluate_start(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace);
 

@@ -33,7 +33,9 @@ const Contact* find_same(const Model& model, const std::vector<Contact>& list, c
 bool learn_contacts(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
   Iterate& at = w.current;
   const std::vector<Contact> before = at.contacts;
+  const double moved = at.moved;
   find_contacts_of(model, inputs, w, at);
+  at.moved = moved;  // those of before stay
   std::vector<Contact> more;
   for (const Contact& contact : at.contacts) {
     if (!contact.stencil.is_vertex() && find_same(model, before, contact) == nullptr) more.push_back(contact);
