@@ -86,14 +86,20 @@ class Page:
             while (self.last("frame") or {"frame": 0})["frame"] < frames:
                 assert self.changed.wait(end - time.monotonic()), f"frame {frames} did not come"
 
-    def grab_something(self):
-        """Grabs at the first place of the picture, from the middle outwards, where a body is."""
+    def grab_something(self, timeout=10):
+        """Grabs at the first place of the picture, from the middle outwards, where a body is. What was dragged may have
+        swung out of the picture, and comes back."""
         places = [(0.1 * x, 0.1 * y) for x in range(1, 10) for y in range(1, 10)]
-        for x, y in sorted(places, key=lambda place: (place[0] - 0.5) ** 2 + (place[1] - 0.5) ** 2):
-            status, answer = self.command(do="grab", x=x, y=y)
-            if status == 200:
-                return answer
-        raise AssertionError("no body is in the picture")
+        end = time.monotonic() + timeout
+        while time.monotonic() < end:
+            refused = set()
+            for x, y in sorted(places, key=lambda place: (place[0] - 0.5) ** 2 + (place[1] - 0.5) ** 2):
+                status, answer = self.command(do="grab", x=x, y=y)
+                if status == 200:
+                    return answer
+                refused.add(json.dumps(answer))
+            time.sleep(0.1)
+        raise AssertionError(f"no body is in the picture of {self.state()}: {refused}")
 
     def save(self, folder):
         """Saves the replay into a folder, as a browser does. Returns its file."""
