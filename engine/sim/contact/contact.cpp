@@ -70,10 +70,10 @@ ContactChange add_contacts(const std::vector<Contact>& contacts, const Positions
                            const Positions& direction, Positions* gradient, double sign) {
   ContactChange change;
   for (const Contact& contact : contacts) {
-    const Vec3 p = contact.stencil.at(point);
+    const Vec3 p = contact.stencil.at(point), before = reference != nullptr ? contact.stencil.at(*reference) : p;
     const double below = std::min(0.0, contact.normal.dot(p) - contact.offset);
-    double below_before = 0;
-    if (reference != nullptr) below_before = std::min(0.0, gap(contact, *reference));
+    const double below_before = reference != nullptr ? std::min(0.0, contact.normal.dot(before) - contact.offset) : 0;
+    if (below == 0 && below_before == 0 && contact.friction == 0) continue;
     change.value += contact.stiffness * (below - below_before) * (below + below_before);
     Vec3 slope = 2 * contact.stiffness * below * contact.normal;
     if (contact.friction > 0) {
@@ -81,8 +81,7 @@ ContactChange add_contacts(const std::vector<Contact>& contacts, const Positions
       const double u = slid.norm();
       change.value += contact.friction * friction_potential(u, contact.stick);
       if (reference != nullptr)
-        change.value -=
-            contact.friction * friction_potential(slip(contact, contact.stencil.at(*reference)).norm(), contact.stick);
+        change.value -= contact.friction * friction_potential(slip(contact, before).norm(), contact.stick);
       slope += contact.friction * friction_slope_over_u(u, contact.stick) * slid;
     }
     if (gradient == nullptr) continue;
