@@ -84,7 +84,8 @@ def test_mutated_requests_do_no_harm(session):
                  b'{"do":"go","frame":2}', b'{"do":"show","field":"stretch"}', b'{"do":"zoom","by":1.1}']:
         good.append(f"POST {session.base}do HTTP/1.1\r\nHost: localhost\r\nX-Writer: {session.page.writer}\r\n"
                     f"Connection: close\r\nContent-Length: {len(body)}\r\n\r\n".encode() + body)
-    assert status_of(talk(session, good[0])) == 200  # the first picture makes the renderer, which needs memory of its own
+    # The first picture makes the renderer, which needs time and memory of its own.
+    assert status_of(talk(session, good[0], wait=60)) == 200
     before = None
     for number in range(600):
         data = bytearray(choose.choice(good))
