@@ -36,7 +36,7 @@ struct Contact {
   std::int32_t number = 0;
   // Friction is lagged; it opposes u - origin along the plane (lagged_friction.h).
   double friction = 0;       // coefficient times normal force [N]
-  double coefficient = 0;    // of friction
+  double coefficient = 0;    // of friction, or twice that where the point was pressed in before
   double most_pressing = 0;  // no larger normal force causes friction in this step [N]
   // This is where u would be if the point had moved with the other side [m]. Colliders without friction leave it at 0.
   Vec3 origin = Vec3::Zero();

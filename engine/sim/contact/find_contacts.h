@@ -1,8 +1,9 @@
 // Finds where a body's vertices, and the points of its edges and faces that need it (face_points.h), meet rigid
-// colliders on their path through a step, and the planes that hold them: once for each iterate, with an exact test of
-// only those that may have come near. The contacts between the parts of a joined model, which surface_contacts.h finds,
-// come in the same list. Some functions of this header have files of their own: impacts are found in first_impact.cpp,
-// and contacts are counted in contact_counts.cpp. Not here: the energies of these planes (contact.h).
+// colliders on their path through a step, and the planes that hold them: for each iterate whose contacts are not kept
+// (solver/place_iterate.h), with an exact test of only those that may have come near. The contacts between the parts of
+// a joined model, which surface_contacts.h finds, come in the same list. Some functions of this header have files of
+// their own: impacts are found in first_impact.cpp, and contacts are counted in contact_counts.cpp. Not here: the
+// energies of these planes (contact.h).
 #pragma once
 
 #include <memory>
