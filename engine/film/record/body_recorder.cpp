@@ -13,6 +13,7 @@
 #include "sim/measures/far_side.h"
 #include "sim/measures/fields.h"
 #include "sim/measures/measures.h"
+#include "sim/solver/open_workspace.h"
 
 namespace supple {
 

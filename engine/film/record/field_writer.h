@@ -5,10 +5,10 @@
 #include "output/files/vtu.h"
 #include "output/run/run_folder.h"
 #include "scene/building/assemble.h"
-#include "sim/solver/objective.h"
 
 namespace supple {
 
+struct OpenWorkspace;
 struct SceneDef;
 
 class FieldWriter {

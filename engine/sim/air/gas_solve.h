@@ -5,7 +5,7 @@
 // Morrison and Woodbury: Nocedal and Wright 2006, "Numerical optimization", appendix A.1).
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <vector>
 
 #include "sim/air/air_forces.h"
@@ -35,14 +35,7 @@ class GasSolve {
   }
 
   // Turns z = H^-1 r into the solution with the gas.
-  void correct(Positions& z) const {
-    const auto amounts = static_cast<Eigen::Index>(gradients_.size());
-    Eigen::VectorXd along(amounts);
-    for (Eigen::Index i = 0; i < amounts; ++i) along[i] = dot(gradients_[std::size_t(i)], z);
-    const Eigen::VectorXd share = matrix_.ldlt().solve(along);
-    if (!share.allFinite()) return;
-    for (Eigen::Index i = 0; i < amounts; ++i) z -= share[i] * answers_[std::size_t(i)];
-  }
+  void correct(Positions& z) const;
 
  private:
   static double dot(const Positions& a, const Positions& b) { return (a.array() * b.array()).sum(); }

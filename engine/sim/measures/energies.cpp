@@ -7,6 +7,7 @@
 #include "sim/model/bending.h"
 #include "sim/solver/begin_step.h"
 #include "sim/solver/energy_gain.h"
+#include "sim/solver/objective.h"
 
 namespace supple {
 namespace {

@@ -2,10 +2,13 @@
 // this, so its times do not contain it.
 #pragma once
 
+#include "sim/model/inputs.h"
+#include "sim/model/model.h"
 #include "sim/model/state.h"
-#include "sim/solver/objective.h"
 
 namespace supple {
+
+struct OpenWorkspace;
 
 struct Energies {
   double kinetic = 0, elastic = 0, gravitational = 0;  // the last one against the rest shape [J]

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "sim/model/element_view.h"
+#include "sim/solver/open_workspace.h"
 
 namespace supple {
 

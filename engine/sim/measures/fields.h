@@ -6,10 +6,12 @@
 #include <array>
 #include <vector>
 
+#include "sim/model/model.h"
 #include "sim/model/state.h"
-#include "sim/solver/open_workspace.h"
 
 namespace supple {
+
+struct OpenWorkspace;
 
 struct ElementFields {
   // These fields have one entry for each tetrahedron of the input; they are empty when there are none.
