@@ -114,6 +114,7 @@ StepInputs SolverComparison::inputs_of(const BenchState& state, const SolverEntr
   StepInputs inputs = put(state);
   inputs.solver.iterations = entry.iterations;
   inputs.solver.rounds = 1;
+  inputs.solver.still = 0;
   inputs.solver.history = entry.history;
   inputs.solver.line_search = LineSearch::armijo;
   inputs.solver.chebyshev = entry.chebyshev;

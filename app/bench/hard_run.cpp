@@ -236,8 +236,8 @@ StabilityOutcome HardRun::play(std::vector<Positions>* motion, WorstStep* worst)
       budget.after_step(model(), body().inputs(), before.x, body().state(), workspace);
     }
     const EnergyBalance& balance = budget.balance();
-    if (balance.exchanged > 0)
-      outcome.from_nothing = std::max(outcome.from_nothing, balance.from_nothing / balance.exchanged);
+    if (balance.exchanged() > 0)
+      outcome.from_nothing = std::max(outcome.from_nothing, balance.from_nothing / balance.exchanged());
     if (worst != nullptr && (frame == 0 || report.error_estimate > outcome.error_estimate)) *worst = {frame, before};
     outcome.error_estimate = std::max(outcome.error_estimate, report.error_estimate);
     if (hard_.follows_solution) outcome.motion_error = std::max(outcome.motion_error, motion_error_of_step(before));
@@ -275,6 +275,7 @@ TabledErrors HardRun::errors_of(const WorstStep& worst) {
     more.solver = solvers.settings(def.method, def.settings);
     more.solver.iterations = iterations;
     more.solver.rounds = 1;
+    more.solver.still = 0;
     State after = worst.before;
     const auto rule = solvers.rule(def.method, model());
     const bool failed = step(model(), more, after, workspace, *rule).failed;

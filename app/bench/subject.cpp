@@ -75,6 +75,7 @@ Solvers solver_instead(Method method, int iterations, DirectionStart start) {
   return {[method](const Method&, const Model& model) { return make_rule(method, model); },
           [method, iterations, start](const Method&, SolverSettings settings) {
             settings.iterations = iterations;
+            settings.still = 0;
             settings.matrix = start.matrix;
             settings.levels = start.levels();
             return settings_of(method, settings);

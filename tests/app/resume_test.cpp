@@ -168,7 +168,7 @@ until = 0.2
   const auto whole = test::profile_of(folder_.path / "whole")["frames"];
   const auto cut = test::profile_of(folder_.path / "cut")["frames"];
   for (std::size_t frame = 0; frame < 12; ++frame)
-    for (const char* key : {"from_nothing", "total", "put_in"})
+    for (const char* key : {"from_nothing", "total", "put_in", "exchanged"})
       EXPECT_NEAR(cut[frame]["bodies"][0]["energy"][key].get<double>(),
                   whole[frame]["bodies"][0]["energy"][key].get<double>(), 1e-9)
           << key << " in frame " << frame;

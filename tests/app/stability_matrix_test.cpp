@@ -82,7 +82,7 @@ TEST(StabilityMatrix, ACaseThatIsTurnedHasTheSameAnswerTurned) {
     for (const NamedMaterial& material : stability_materials()) {
       for (const char* hard : {"24 turned copies, hanging", "24 turned copies, spinning"}) {
         const std::vector<StabilityOutcome> copies =
-            outcomes_of(hard, material.name, false, fmt::format("elements = \"{}\"\n", elements));
+            outcomes_of(hard, material.name, false, fmt::format("elements = \"{}\"\nstill = 0\n", elements));
         ASSERT_EQ(copies.size(), 4u);
         EXPECT_EQ(copies[0].turned_apart, 0);
         for (std::size_t copy = 1; copy < copies.size(); ++copy) {

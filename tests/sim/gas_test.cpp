@@ -285,10 +285,10 @@ TEST(Gas, ClosesTheBalanceOfEnergy) {
       ASSERT_FALSE(step(model, inputs, state, w).failed);
       budget.after_step(model, inputs, q, state, w);
       least = std::min(least, budget.energies().gas);
-      EXPECT_LE(budget.balance().from_nothing, 1e-3 * budget.balance().exchanged) << i;
+      EXPECT_LE(budget.balance().from_nothing, 1e-3 * budget.balance().exchanged()) << i;
     }
     EXPECT_LT(least, -0.1);  // the gas has done work
-    EXPECT_NEAR(budget.energies().total(), budget.balance().put_in, 0.1 * budget.balance().exchanged);
+    EXPECT_NEAR(budget.energies().total(), budget.balance().put_in, 0.1 * budget.balance().exchanged());
   }
 }
 

@@ -33,7 +33,7 @@ inline double share_from_nothing(World& world, int frames, double& put_in) {
                           MovingBody& body = world.body(b);
                           budgets[b].after_step(body.model(), body.inputs(), before[b], body.state(), body.workspace());
                           const EnergyBalance& balance = budgets[b].balance();
-                          if (balance.exchanged > 0) most = std::max(most, balance.from_nothing / balance.exchanged);
+                          if (balance.exchanged() > 0) most = std::max(most, balance.from_nothing / balance.exchanged());
                         }};
   for (int i = 0; i < frames; ++i) EXPECT_TRUE(world.play(i, watch));
   put_in = budgets.front().balance().put_in;

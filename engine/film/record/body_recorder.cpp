@@ -74,7 +74,7 @@ void BodyRecorder::start_energy_balance(const EnergyBalance& balance) {
 
 void BodyRecorder::resume(const BodyRow& row) {
   const BalanceRow before = row.balance.value_or(BalanceRow{});
-  start_energy_balance({before.total, before.put_in, before.from_nothing, before.exchanged});
+  start_energy_balance({before.total, before.put_in, before.from_nothing, before.held, before.worked});
 }
 
 void BodyRecorder::begin_frame(int frame, bool measure_error, BodyRow& row) {
@@ -165,7 +165,7 @@ void BodyRecorder::end_frame() {
   if (row_->contact) measure_contact();
   if (!model().seams.empty()) measure_seams();
   const EnergyBalance& balance = energy_budget_.balance();
-  row_->balance = {balance.total, balance.put_in, balance.from_nothing, balance.exchanged};
+  row_->balance = {balance.total, balance.put_in, balance.from_nothing, balance.held, balance.worked};
   if (model().flows()) row_->balance->flowed = balance.flowed;
   if (world_.scene().output.energy) {
     const Energies& energy = energy_budget_.energies();

@@ -50,8 +50,10 @@ struct DeepRow {
 
 // Holds what a body has and what it was given since the film began (sim/measures/energies.h) [J].
 struct BalanceRow {
-  double total = 0, put_in = 0, from_nothing = 0, exchanged = 0;
+  double total = 0, put_in = 0, from_nothing = 0, held = 0, worked = 0;
   std::optional<double> flowed = {};  // elastic energy that was lost to flow; nothing where the body does not flow
+
+  double exchanged() const { return held + worked; }
 };
 
 // Holds what the steps of a frame know of themselves, summed up. Bodies whose steps are made together share it.

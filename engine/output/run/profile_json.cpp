@@ -62,7 +62,9 @@ void add_energy(const BodyRow& body, Json& row) {
   row["energy"] = {{"total", body.balance->total},
                    {"put_in", body.balance->put_in},
                    {"from_nothing", body.balance->from_nothing},
-                   {"exchanged", body.balance->exchanged}};
+                   {"exchanged", body.balance->exchanged()},
+                   {"held", body.balance->held},
+                   {"worked", body.balance->worked}};
   if (body.balance->flowed) row["energy"]["lost_to_flow"] = *body.balance->flowed;
 }
 
@@ -169,7 +171,8 @@ BodyRow body_row(const Json& json) {
   if (json.contains("energy")) {
     const Json& energy = json.at("energy");
     row.balance = {energy.at("total").get<double>(), energy.at("put_in").get<double>(),
-                   energy.at("from_nothing").get<double>(), energy.at("exchanged").get<double>()};
+                   energy.at("from_nothing").get<double>(), energy.value("held", energy.at("exchanged").get<double>()),
+                   energy.value("worked", 0.0)};
     if (energy.contains("lost_to_flow")) row.balance->flowed = energy.at("lost_to_flow").get<double>();
   }
   read_if_there(json, "inverted", row.inverted);

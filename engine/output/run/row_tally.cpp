@@ -68,12 +68,12 @@ void add_pairs(const FrameRow& row, std::vector<PairTally>& list) {
 }
 
 void add_energy(const FrameRow& row, const BalanceRow& balance, BodyTally& tally) {
-  if (balance.from_nothing <= much_energy * balance.exchanged) return;
+  if (balance.from_nothing <= much_energy * balance.exchanged()) return;
   if (tally.first_gain < 0) tally.first_gain = row.frame;
   if (tally.worst_gain >= 0 && balance.from_nothing <= tally.gained) return;
   tally.worst_gain = row.frame;
   tally.gained = balance.from_nothing;
-  tally.exchanged = balance.exchanged;
+  tally.exchanged = balance.exchanged();
 }
 
 }  // namespace

@@ -9,13 +9,20 @@
 
 namespace supple {
 
+// Returns the settings that scenes begin with. Nobody sees in a film how a body that lies still could lie better.
+inline SolverSettings settings_of_films() {
+  SolverSettings settings;
+  settings.still = 1e-6;
+  return settings;
+}
+
 // Describes how the steps of a body are solved: the table [solver]. `settings` are part of every step's inputs and cost
 // nothing to change. The other members are built into the model (fit, precision, integrator, damping: assemble.cpp),
 // select the rule for directions (method), or are read by MovingBody (calming, untangle). live_keys.cpp defines what a
 // change of each costs.
 struct SolverDef {
   Method method = Method::quasi_newton;
-  SolverSettings settings;
+  SolverSettings settings = settings_of_films();
   StretchInterval fit;
   Precision precision = Precision::single_precision;
   Integrator integrator = Integrator::backward_euler;

@@ -134,6 +134,10 @@ SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
   s.target_error = table.number(
       {"target_error", "", "stop once both of the solver's own error estimates are below; 0 does all iterations"},
       s.target_error, Range::between(0, 1));
+  s.still = table.number({"still", "body sizes",
+                          "stop once less than this is left to go, so that what lies still costs next to nothing; 0 or "
+                          "levels = 1 does all iterations"},
+                         s.still, Range::between(0, 1));
   s.budget_ms = table.number({"budget_ms", "ms",
                               "no iteration of a step begins that would probably end later, except for the first; runs "
                               "then differ, unless --repeat takes their numbers from an earlier run; 0: no bound"},

@@ -42,6 +42,7 @@ constexpr auto patterns = std::to_array<LivePattern>({
     {"solver.line_search", nothing},
     {"solver.armijo", nothing},
     {"solver.target_error", nothing},
+    {"solver.still", nothing},
     {"solver.budget_ms", nothing},
     {"solver.contact", nothing},
     {"body[].material", new_factor},

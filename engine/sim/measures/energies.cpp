@@ -111,8 +111,6 @@ void EnergyBudget::start(const Model& model, const StepInputs& inputs, const Sta
   parts_.gas = w.air.gas_energy(model, state.x);
   balance_ = balance;
   balance_.total = parts_.total();
-  most_ = balance_.exchanged;
-  moved_ = 0;
   balance_.flowed = known_flow_ = state.flow.lost;
   known_bounces_ = state.bounces.given;
   lowest_ = balance_.total - balance_.put_in - balance_.from_nothing;
@@ -122,7 +120,7 @@ void EnergyBudget::start(const Model& model, const StepInputs& inputs, const Sta
 
 void EnergyBudget::add_to_budget(double work) {
   balance_.put_in += work;
-  moved_ += std::abs(work);
+  balance_.worked += std::abs(work);
 }
 
 void EnergyBudget::count_bounces(const State& state) {
@@ -187,8 +185,8 @@ void EnergyBudget::sum_up() {
   const double own = balance_.total - balance_.put_in;
   lowest_ = std::min(lowest_, own);
   balance_.from_nothing = own - lowest_;
-  most_ = std::max(most_, parts_.kinetic + std::abs(parts_.elastic) + parts_.springs + std::abs(parts_.gas));
-  balance_.exchanged = most_ + moved_;
+  const double held = parts_.kinetic + std::abs(parts_.elastic) + parts_.springs + std::abs(parts_.gas);
+  balance_.held = std::max(balance_.held, held);
 }
 
 void EnergyBudget::after_untangling(const Model& model, const StepInputs& inputs, const State& state,

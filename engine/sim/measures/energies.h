@@ -27,10 +27,12 @@ struct EnergyBalance {
   // By handles, seams that close, contact, restitution, air and changed values; negative where more was taken.
   double put_in = 0;
   double from_nothing = 0;  // how far total - put_in is above its lowest value so far
-  // The largest sum of kinetic, elastic and springs' energy so far, and all that was put in or taken; the other values
-  // are compared with it.
-  double exchanged = 0;
-  double flowed = 0;  // elastic energy that was lost to flow (model/flow.h); it is missing in `total`
+  double held = 0;          // the largest sum of kinetic, elastic, springs' and gas' energy so far
+  double worked = 0;        // all that was put in and all that was taken, each as positive
+  double flowed = 0;        // elastic energy that was lost to flow (model/flow.h); it is missing in `total`
+
+  // Returns what the other values are compared with.
+  double exchanged() const { return held + worked; }
 };
 
 // Follows a body step by step. Damping and backward Euler itself take energy; nothing but what holds, pushes or changes
@@ -70,8 +72,6 @@ class EnergyBudget {
   double lowest_ = 0;         // the lowest total - put_in so far
   double known_flow_ = 0;     // Flow::lost when parts_ was computed
   double known_bounces_ = 0;  // Bounces::given when parts_ was computed
-  double most_ = 0;           // the largest sum of the parts that are never negative
-  double moved_ = 0;          // sum of all work, each as positive
   std::uint64_t model_ = 0;
   bool knows_springs_ = false;  // whether parts_.springs is the present energy of springs and seams
 };

@@ -92,6 +92,7 @@ struct SolverSettings {
   LineSearch line_search = LineSearch::armijo;
   double armijo = 0.3;      // gamma
   double target_error = 0;  // stop when the error estimate falls below; 0: do all iterations
+  double still = 0;         // stop when less than this is left to go [body sizes]; 0, or levels = 1: do all iterations
   // Single: elements may be evaluated in single precision while that is enough (solver/element_precision.h).
   Precision elements = Precision::single_precision;
   double budget_ms = 0;  // of one step: an iteration that would probably end later does not begin; 0: no bound

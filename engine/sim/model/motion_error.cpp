@@ -27,14 +27,14 @@ double own_motion(const Model& model, const Part& part, const Positions& q, cons
   return std::max({mass_distance(model, part, x, q), least_share * mass_distance(model, part, y, q), least});
 }
 
-// Returns the largest of the parts' errors; one that is not a number counts as the largest.
-template <class ErrorOfPart>
-double largest_error(const Model& model, const ErrorOfPart& error_of) {
+// Returns the largest of numbers of the parts; one that is not a number counts as the largest.
+template <class NumberOfPart>
+double largest_of_parts(const Model& model, const NumberOfPart& number_of) {
   double largest = 0;
   for (const Part& part : model.parts) {
-    const double error = error_of(part);
-    if (std::isnan(error)) return error;
-    largest = std::max(largest, error);
+    const double number = number_of(part);
+    if (std::isnan(number)) return number;
+    largest = std::max(largest, number);
   }
   return largest;
 }
@@ -53,7 +53,7 @@ double estimated_of(const Model& model, const Part& part, const Positions& q, co
 
 double motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,
                     const Positions& solved) {
-  return largest_error(model, [&](const Part& part) { return motion_error_of(model, part, q, y, x, solved); });
+  return largest_of_parts(model, [&](const Part& part) { return motion_error_of(model, part, q, y, x, solved); });
 }
 
 std::vector<double> motion_errors(const Model& model, const Positions& q, const Positions& y, const Positions& x,
@@ -65,7 +65,12 @@ std::vector<double> motion_errors(const Model& model, const Positions& q, const 
 
 double estimated_motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,
                               const Positions& d, double times) {
-  return largest_error(model, [&](const Part& part) { return estimated_of(model, part, q, y, x, d, times); });
+  return largest_of_parts(model, [&](const Part& part) { return estimated_of(model, part, q, y, x, d, times); });
+}
+
+double way_in_sizes(const Model& model, const Positions& d) {
+  return largest_of_parts(
+      model, [&](const Part& part) { return mass_length(model, part, d) / (part.size * std::sqrt(part.mass)); });
 }
 
 std::vector<double> estimated_motion_errors(const Model& model, const Positions& q, const Positions& y,

@@ -26,4 +26,8 @@ double estimated_motion_error(const Model& model, const Positions& q, const Posi
 std::vector<double> estimated_motion_errors(const Model& model, const Positions& q, const Positions& y,
                                             const Positions& x, const Positions& d, double times);
 
+// Returns the length of the way d (n_free x 3 [m]): the root of the mean of |d|^2 by mass, over the size of the part. It
+// is the largest of the parts' [body sizes].
+double way_in_sizes(const Model& model, const Positions& d);
+
 }  // namespace supple

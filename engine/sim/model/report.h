@@ -19,13 +19,15 @@ struct ContactCounts {
   int cycles = 0;    // iterations that came back to the touching points of the one before last
 };
 
-enum class StopReason { iterations, round_off, target_error, line_search_failed, budget };
+enum class StopReason { iterations, round_off, target_error, still, line_search_failed, budget };
 template <>
 struct Names<StopReason> {
-  static constexpr std::array table = {
-      Name{StopReason::iterations, "iterations"}, Name{StopReason::round_off, "round-off"},
-      Name{StopReason::target_error, "target error"}, Name{StopReason::line_search_failed, "line search failed"},
-      Name{StopReason::budget, "budget"}};
+  static constexpr std::array table = {Name{StopReason::iterations, "iterations"},
+                                       Name{StopReason::round_off, "round-off"},
+                                       Name{StopReason::target_error, "target error"},
+                                       Name{StopReason::still, "still"},
+                                       Name{StopReason::line_search_failed, "line search failed"},
+                                       Name{StopReason::budget, "budget"}};
 };
 
 struct StepFailure {
@@ -75,11 +77,12 @@ struct StepReport {
   StepFailure failure;
 };
 
-// Tells whether a step did not come near its minimum. Where Newton's method finished it, the estimate alone counts:
-// line searches that tried many points only tell that the iterations before were hard.
+// Tells whether a step did not come near its minimum. Where Newton's method finished it, or nothing is left to go, the
+// estimate alone counts: line searches that tried many points only tell that the iterations before were hard.
 inline bool is_unsolved(const StepReport& report) {
+  const bool is_certain = report.newton_iterations > 0 || report.stop_reason == StopReason::still;
   return is_unsolved(std::max(report.error_estimate, report.motion_estimate), report.iterations,
-                     report.newton_iterations > 0 ? 0 : report.line_search);
+                     is_certain ? 0 : report.line_search);
 }
 
 }  // namespace supple

@@ -180,4 +180,12 @@ bool is_near_enough(const Model& model, const StepInputs& inputs, const Position
   return q == nullptr || motion_estimate(model, inputs, *q, w) < target;
 }
 
+bool is_still(const Model& model, const StepInputs& inputs, const Positions& q, double gained, OpenWorkspace& w) {
+  constexpr double small = 0.03;  // a film says that a step is unsolved from 0.1 on
+  const SolverSettings& solver = inputs.solver;
+  if (solver.still <= 0 || solver.levels < 2) return false;
+  if (way_in_sizes(model, w.direction) * times_ahead(w.report) >= solver.still) return false;
+  return motion_estimate(model, inputs, q, w) < small && error_at_end(model, inputs, w, gained) < small;
+}
+
 }  // namespace supple

@@ -67,4 +67,10 @@ void report_motion_estimates(const Model& model, const StepInputs& inputs, const
 bool is_near_enough(const Model& model, const StepInputs& inputs, const Positions* q, double above_start,
                     OpenWorkspace& workspace);
 
+// Tells whether the iterate is so near the minimum that nobody can see the rest: each part has less than the settings'
+// `still` left to go, and both estimates of the step from q (n x 3) are small. A body at rest then costs next to
+// nothing. gained: the step's gain so far [J]. Overwrites the trial iterate.
+bool is_still(const Model& model, const StepInputs& inputs, const Positions& q, double gained,
+              OpenWorkspace& workspace);
+
 }  // namespace supple

@@ -233,6 +233,11 @@ bool Iterations::advance(const SearchLimits& limits) {
     report.stop_reason = StopReason::target_error;
     return false;
   }
+  if (rule_.measures_last_iterate() && origin_.q != nullptr &&
+      is_still(model_, inputs_, *origin_.q, report.decrease + origin_.above_start, w_)) {
+    report.stop_reason = StopReason::still;
+    return false;
+  }
   Change change{};
   IterationRecord record;
   const double before = w_.current.g, slope = report.slope;

@@ -72,7 +72,8 @@ int trials_before_newton(const StepContext& c, int iterations) {
 
 Hardness hardness_of(const StepContext& c) {
   const StepReport& report = c.w.report;
-  if (report.failed || !may_finish_by_newton(c.model, c.inputs)) return Hardness::none;
+  if (report.failed || report.stop_reason == StopReason::still) return Hardness::none;
+  if (!may_finish_by_newton(c.model, c.inputs)) return Hardness::none;
   if (gains_energy(c)) return Hardness::gains_energy;
   if (c.gave_up || is_unsolved(report.error_estimate, report.iterations, report.line_search))
     return Hardness::far_in_energy;
