@@ -124,7 +124,6 @@ struct EndOfRun {
   const RunFolder& folder;
   const RunPlace& place;
   const SceneDef& scene;
-  const std::string& scene_json;
   std::string unrecorded;  // the message of a final record that could not be written
 };
 
@@ -135,31 +134,9 @@ std::string resuming_text(const EndOfRun& end) {
   return fmt::format("; --resume --out {} goes on", shell_word(end.folder.path().string()));
 }
 
-// Returns the options that triple the iterations of a scene's bodies: those of the scene, unless bodies have their own.
-std::string more_iterations(const SceneDef& scene, const std::string& scene_json) {
-  const auto tripled = [](const BodyDef& body) { return 3 * body.solver.settings.iterations; };
-  const auto json = json_if_valid<nlohmann::ordered_json>(scene_json);
-  std::string options;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const BodyDef& body = scene.bodies[b];
-    const nlohmann::ordered_json::json_pointer own(fmt::format("/body/{}/solver/iterations", b));
-    if (json.contains(own)) options += fmt::format(" --set body.{}.solver.iterations={}", body.name, tripled(body));
-  }
-  return options.empty() ? fmt::format(" --set solver.iterations={}", tripled(scene.bodies.front())) : options;
-}
-
-// Names the frames that were not solved, and what brings them nearer. Bodies may say that it is meant.
-std::string unsolved_warning(const EndOfRun& end) {
-  std::vector<std::string> meant;
-  for (const BodyDef& body : end.scene.bodies)
-    if (is_meant(body, WarningKind::unsolved)) meant.push_back(body.name);
-  const std::string text = end.result.tally.unsolved_text(meant);
-  return text.empty() ? "" : text + ";" + more_iterations(end.scene, end.scene_json) + " brings them nearer";
-}
-
 // Prints how the film ended; returns the exit status.
 int say_result(const FilmCommand& command, const EndOfRun& end) {
-  const auto& [result, folder, place, scene, scene_json, unrecorded] = end;
+  const auto& [result, folder, place, scene, unrecorded] = end;
   if (command.json) {
     print_json(result, folder);
   } else if (command.table && !command.plan.quiet && !result.rows.empty()) {
@@ -171,8 +148,6 @@ int say_result(const FilmCommand& command, const EndOfRun& end) {
                             std::max(result.rows.size(), result.kept_frames),
                             command.plan.film_only ? "frames' motion" : "whole frames", folder.path().string()));
   }
-  if (const std::string unsolved = unsolved_warning(end); !unsolved.empty())
-    say(stderr, fmt::format("warning: {}\n", unsolved));
   if (!unrecorded.empty()) say(stderr, fmt::format("supple: {}\n", unrecorded));
   if (!result.video_message.empty())
     say(stderr, fmt::format("{}: {}\n", result.video_failed ? "supple" : "warning", result.video_message));
@@ -364,7 +339,7 @@ int run_film(const FilmCommand& command, const std::vector<std::string>& words, 
 
   std::vector<ThreadTrace> trace = plan.trace ? stop_trace() : std::vector<ThreadTrace>();
   const std::string unrecorded = write_records(result, film, folder, plan.trace ? &trace : nullptr);
-  int status = say_result(command, {result, folder, start.place, scene, film.info.scene_json, unrecorded});
+  int status = say_result(command, {result, folder, start.place, scene, unrecorded});
   if (start.verifier && result.end == FilmEnd::done && !say_verdict(command, *start.verifier, result.rows.size()))
     status = 1;
   if (command.page && !result.rows.empty()) {

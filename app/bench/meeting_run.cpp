@@ -183,7 +183,6 @@ MeetingOutcome MeetingRun::play() {
   outcome.gained = energy.gained();
   if (outcome.finite) look_at_end(outcome);
   for (std::string& warning : tally.warnings()) outcome.warnings.push_back(std::move(warning));
-  if (std::string unsolved = tally.unsolved_text(); !unsolved.empty()) outcome.warnings.push_back(std::move(unsolved));
   return outcome;
 }
 

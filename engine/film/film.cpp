@@ -18,6 +18,7 @@
 #include "film/progress.h"
 #include "film/record/film_checks.h"
 #include "film/record/film_identity.h"
+#include "film/record/unsolved_words.h"
 #include "output/files/child_program.h"
 #include "output/files/json_text.h"
 #include "output/files/whole_file.h"
@@ -222,6 +223,7 @@ FilmResult make_film(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
                      const FilmSolvers& solvers) {
   FilmResult result;
   result.kept_frames = start.kept_frames();
+  result.tally.set_unsolved_words(unsolved_words(film.world.script()));
   const SceneDef scene = film.world.script().scene();
   std::optional<VideoEncoder> video;
   if (plan.wants_video()) begin_video(plan, scene, folder, video);

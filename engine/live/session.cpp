@@ -10,8 +10,8 @@
 #include "base/error.h"
 #include "base/interrupts.h"
 #include "base/text.h"
+#include "film/record/unsolved_words.h"
 #include "output/files/json_text.h"
-#include "scene/building/warnings.h"
 #include "scene/config/config.h"
 
 namespace supple {
@@ -453,11 +453,8 @@ void LiveSession::tell_state() {
 }
 
 void LiveSession::tell_words() {
-  std::vector<std::string> words = tally_.warnings(), meant;
-  for (const Body& body : world_.bodies())
-    if (supple::is_meant(body.def, WarningKind::unsolved)) meant.push_back(body.def.name);
-  if (const std::string unsolved = tally_.unsolved_text(meant); !unsolved.empty())
-    words.push_back(unsolved + "; more solver.iterations bring them nearer");
+  tally_.set_unsolved_words({.meant = bodies_meant_unsolved(world_.scene())});
+  std::vector<std::string> words = tally_.warnings();
   if (!failure_.empty()) words.insert(words.begin(), failure_);
   told_error_ = keeper_.error();
   if (!told_error_.empty()) words.push_back(told_error_);

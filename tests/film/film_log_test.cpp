@@ -77,7 +77,7 @@ TEST(FilmLog, RowsComeBackAsTheyWere) {
   EXPECT_TRUE(
       tally.warnings()[0].ends_with("first in frame 30: up to 8 J in frame 30, 80 % of what it exchanged; more "
                                     "solver.iterations or substeps, or a stiffer material"));
-  EXPECT_TRUE(tally.unsolved_text().starts_with("1 of 300 frames did not come near their solution:"));
+  EXPECT_TRUE(tally.unsolved_warning().starts_with("1 of 300 frames did not come near their solution:"));
 }
 
 TEST(FilmLog, AFileThatLostRowsIsNamed) {

@@ -1,12 +1,11 @@
 // Tests the line that names frames whose steps were not solved.
-#include "output/run/unsolved_steps.h"
+#include "output/run/row_tally.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "output/run/row_tally.h"
 #include "support/bodies.h"
 #include "support/program.h"
 
@@ -26,35 +25,44 @@ FrameRow row_of(int frame, double estimate, int iterations, int trials) {
   return row;
 }
 
+std::string unsolved_of(const std::vector<FrameRow>& rows) { return RowTally(rows).unsolved_warning(); }
+const std::string remedy = "; more solver.iterations bring them nearer";
+
 TEST(Unsolved, NamesTheWorstFrameOfEachBody) {
   std::vector<FrameRow> rows = {row_of(0, 1e-5, 10, 10), row_of(1, 0.3, 10, 12), row_of(2, 0.63, 10, 15),
                                 row_of(3, 0.1, 10, 40)};
   rows[2].bodies[0].motion_estimate = 0.2;
   EXPECT_EQ(
-      unsolved_text(rows),
+      unsolved_of(rows),
       "2 of 4 frames did not come near their solution: body 'bar' by about 0.2 of a step's motion, which is seen where "
-      "it moves fast (frame 2)");
+      "it moves fast (frame 2)" +
+          remedy);
   rows[2].bodies[0].motion_estimate = 0.05;
-  EXPECT_EQ(unsolved_text(rows),
-            "2 of 4 frames did not come near their solution: body 'bar' by too little to be seen (frame 2)");
+  EXPECT_EQ(unsolved_of(rows),
+            "2 of 4 frames did not come near their solution: body 'bar' by too little to be seen (frame 2)" + remedy);
   rows[2].bodies[0].motion_estimate = 15;
   EXPECT_EQ(
-      unsolved_text(rows),
+      unsolved_of(rows),
       "2 of 4 frames did not come near their solution: body 'bar' by more than a step's motion, which is seen where it "
-      "moves fast (frame 2)");
+      "moves fast (frame 2)" +
+          remedy);
   rows[2].bodies[0].motion_estimate = 0;  // not known
   EXPECT_EQ(
-      unsolved_text(rows),
-      "2 of 4 frames did not come near their solution: body 'bar' with an error of about 0.63 in energy (frame 2)");
-  EXPECT_EQ(RowTally(rows).unsolved_text({"bar"}), "");
+      unsolved_of(rows),
+      "2 of 4 frames did not come near their solution: body 'bar' with an error of about 0.63 in energy (frame 2)" +
+          remedy);
+  RowTally meant(rows);
+  meant.set_unsolved_words({.meant = {"bar"}});
+  EXPECT_EQ(meant.unsolved_warning(), "");
   rows[0].bodies[0].motion_estimate = 0.3;
   rows[0].bodies[0].unsolved = is_unsolved(std::max(1e-5, 0.3), 10, 10);
-  EXPECT_TRUE(unsolved_text(rows).starts_with("3 of 4 frames"));
+  EXPECT_TRUE(unsolved_of(rows).starts_with("3 of 4 frames"));
   rows[0].bodies[0].unsolved = false;
   rows[3].bodies[0].unsolved = true;
-  ASSERT_EQ(unsolved_steps(rows).size(), 3u);
-  EXPECT_EQ(unsolved_steps(rows)[2].frame, 3);
+  ASSERT_EQ(RowTally(rows).unsolved().size(), 3u);
+  EXPECT_EQ(RowTally(rows).unsolved()[2].frame, 3);
   const auto json = nlohmann::json::parse(profile_json(rows));
+  EXPECT_EQ(json["summary"]["warnings"], nlohmann::json::array({unsolved_of(rows)}));
   ASSERT_EQ(json["summary"]["unsolved"].size(), 3u);
   EXPECT_EQ(json["summary"]["unsolved"][1]["frame"], 2);
   EXPECT_EQ(json["summary"]["unsolved"][1]["body"], "bar");
@@ -63,8 +71,8 @@ TEST(Unsolved, NamesTheWorstFrameOfEachBody) {
 
 TEST(Unsolved, SaysNothingOfAFilmThatIsSolved) {
   const std::vector<FrameRow> rows = {row_of(0, 1e-5, 10, 10), row_of(1, 0, 0, 0), row_of(2, 0, 0, 1)};
-  EXPECT_EQ(unsolved_text(rows), "");
-  EXPECT_EQ(unsolved_text({}), "");
+  EXPECT_EQ(unsolved_of(rows), "");
+  EXPECT_EQ(unsolved_of({}), "");
   EXPECT_FALSE(nlohmann::json::parse(profile_json(rows))["summary"].contains("unsolved"));
 }
 

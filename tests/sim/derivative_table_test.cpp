@@ -189,6 +189,9 @@ TEST(Derivatives, ForcesOfEveryElementAreTheDerivativesOfItsEnergyAndBalance) {
   std::set<std::size_t> models;
   for (const Material& material : test::all_materials()) models.insert(material.index());
   EXPECT_EQ(models.size(), std::variant_size_v<Material>) << "a material is missing from all_materials()";
+  std::set<std::size_t> membranes;
+  for (const Membrane& membrane : test::all_membranes()) membranes.insert(membrane.index());
+  EXPECT_EQ(membranes.size(), std::variant_size_v<Membrane>) << "a membrane is missing from all_membranes()";
   std::vector<Row> rows;
   for (const Subject& subject : subjects()) rows.push_back(measure(subject));
   const std::string page = test::read_file(test::source_folder / "docs" / "derivatives.md");

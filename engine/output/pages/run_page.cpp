@@ -278,14 +278,21 @@ bool is_slower_than_asked(const std::vector<FrameRow>& rows) {
   return rows.size() > 1 && sum_ms > 1000 * (rows.back().time_s - rows.front().time_s);
 }
 
+// Writes the warnings that the profile has. A run that was killed has rows and no profile.
 std::string warnings_html(const RunRecord& run) {
   const auto profile = json_object_in<Json>(run.folder / "profile.json");
+  const Json summary = profile.is_object() ? profile.value("summary", Json::object()) : Json::object();
   std::string html;
-  if (is_slower_than_asked(run.rows) && profile.is_object() && profile.contains("summary") &&
-      profile["summary"].contains("verdict"))
-    html += "<p class=\"soft\">" + markup_text(text_at(profile["summary"], "verdict")) + "</p>\n";
-  for (const std::string& warning : warnings_of(run.rows))
-    html += "<p class=\"warning\">" + markup_text(warning) + "</p>\n";
+  if (is_slower_than_asked(run.rows) && summary.contains("verdict"))
+    html += "<p class=\"soft\">" + markup_text(text_at(summary, "verdict")) + "</p>\n";
+  std::vector<std::string> warnings;
+  if (summary.contains("warnings") && summary["warnings"].is_array()) {
+    for (const Json& warning : summary["warnings"])
+      if (warning.is_string()) warnings.push_back(warning);
+  } else {
+    warnings = warnings_of(run.rows);
+  }
+  for (const std::string& warning : warnings) html += "<p class=\"warning\">" + markup_text(warning) + "</p>\n";
   return html;
 }
 

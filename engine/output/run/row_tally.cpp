@@ -319,6 +319,7 @@ std::vector<std::string> RowTally::warnings() const {
   for (std::string& warning : depths_of_pairs()) list.push_back(std::move(warning));
   for (std::string& warning : penetrations()) list.push_back(std::move(warning));
   for (std::string& warning : missing_in_pictures()) list.push_back(std::move(warning));
+  if (std::string warning = unsolved_warning(); !warning.empty()) list.push_back(std::move(warning));
   return list;
 }
 
@@ -417,7 +418,8 @@ bool is_further(const UnsolvedStep& one, const UnsolvedStep& other) {
 
 }  // namespace
 
-std::string RowTally::unsolved_text(const std::vector<std::string>& meant) const {
+std::string RowTally::unsolved_warning() const {
+  const std::vector<std::string>& meant = unsolved_words_.meant;
   int frames = 0, last = -1;
   std::vector<UnsolvedStep> worst;  // of each body
   for (const UnsolvedStep& step : unsolved_) {
@@ -435,7 +437,7 @@ std::string RowTally::unsolved_text(const std::vector<std::string>& meant) const
   for (const UnsolvedStep& step : worst)
     text += fmt::format("{} body '{}' {} (frame {})", &step == &worst.front() ? "" : ";", step.body,
                         distance_words(step), step.frame);
-  return text;
+  return text + "; " + unsolved_words_.remedy;
 }
 
 }  // namespace supple

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "output/run/profile.h"
-#include "output/run/unsolved_steps.h"
 #include "output/run/verdict.h"
 
 namespace supple {
@@ -73,6 +72,20 @@ struct MetTally {
   int frame;
 };
 
+// A body's frame of which a step did not come near its solution, by the solver's own estimates.
+struct UnsolvedStep {
+  int frame;
+  std::string body;
+  double error_estimate, motion_estimate;
+  double trials;  // of the line search, an iteration
+};
+
+// Tells what the warning about unsolved steps leaves out, and how it ends.
+struct UnsolvedWords {
+  std::vector<std::string> meant;  // the names of the bodies that say that their unsolved steps are meant
+  std::string remedy = "more solver.iterations bring them nearer";
+};
+
 class RowTally {
  public:
   RowTally() = default;
@@ -85,20 +98,22 @@ class RowTally {
   // Adds a warning that was said when the film began; those of profile and JSON begin with it.
   void remark(std::string warning) { remarks_.push_back(std::move(warning)); }
   const std::vector<std::string>& remarks() const { return remarks_; }
+  void set_unsolved_words(UnsolvedWords words) { unsolved_words_ = std::move(words); }
 
   int frames() const { return frames_; }
   std::uint64_t last_hash() const { return last_hash_; }  // state_hash of the last row
   const std::vector<UnsolvedStep>& unsolved() const { return unsolved_; }
 
-  // These functions give what those of the same purpose give for rows (profile.h, unsolved_steps.h, verdict.h).
+  // These functions give what those of the same purpose give for rows (profile.h, verdict.h).
   std::vector<StageSummary> stages() const;
   std::vector<std::string> warnings() const;
   std::vector<std::string> penetrations() const;
   // Tells, a sentence for each pair, which bodies were deeper in each other than they should be.
   std::vector<std::string> depths_of_pairs() const;
   std::vector<std::string> missing_in_pictures() const;
-  // Leaves out the bodies of which that is meant.
-  std::string unsolved_text(const std::vector<std::string>& meant = {}) const;
+  // Returns the last of the warnings: "3 of 400 frames did not come near their solution: ...", with the worst step of
+  // each body and whether it is seen; empty where there is none.
+  std::string unsolved_warning() const;
   std::string table() const;
   // Says that the film is as a live session played it; empty where none has, or where it is not.
   std::string session_text() const;
@@ -122,6 +137,7 @@ class RowTally {
   std::vector<DeepTally> deep_;
   std::vector<MetTally> met_;
   std::vector<UnsolvedStep> unsolved_;
+  UnsolvedWords unsolved_words_;
 };
 
 }  // namespace supple
