@@ -38,7 +38,7 @@ RunRecord run_with_frame(const EarlierFrame& from) {
   return run;
 }
 
-// Reads the run's scene again, whose steps can then be made. plan: of the film that goes on from the run.
+// Loads the film of the run again, so that its steps can be made. plan: the plan of the film that goes on from the run.
 LoadedFilm film_of_run(const RunRecord& run, const EarlierFrame& from, const FilmPlan& plan, const Solvers& solvers) {
   FilmPlan earlier = plan_of_run(run, {}, {});
   earlier.pictures = FilmPictures::none;
@@ -72,8 +72,8 @@ std::optional<WorldState> checkpoint_of(const RunRecord& run, const LoadedFilm& 
   return std::nullopt;
 }
 
-// Makes the frames that are left until so many are made. cuts: of budgets of time, by body; empty where the run had
-// none.
+// Makes the frames that are left until so many are made. cuts: where budgets of time ended the run's steps, by body;
+// empty where the run had none.
 void play_until(World& world, int frames, const std::vector<CutsByFrame>& cuts) {
   while (world.frames() < frames) {
     const int frame = world.frames();
@@ -87,8 +87,8 @@ void play_until(World& world, int frames, const std::vector<CutsByFrame>& cuts) 
   }
 }
 
-// Returns what a world's scene says of a body, now: its table, or all that may bear on it where a table makes several
-// bodies.
+// Returns what a world's scene says of a body after the frames that the world has entered: its table, or all that may
+// bear on it where a table makes several bodies.
 Json table_of_body(const World& world, std::size_t body) {
   const auto scene = parsed_json<Json>(world.script().scene_json_at(world.frames() - 1));
   const Json& tables = scene.at("body");
@@ -103,7 +103,7 @@ bool is_same_model(const World& earlier, std::size_t there, const World& world, 
   return a == b && earlier.scene().time_step() == world.scene().time_step();
 }
 
-// Tells whether bounces off colliders, which are known by their numbers, are off the same ones.
+// Tells whether two worlds have colliders of the same names in the same order: bounces know colliders by their numbers.
 bool have_same_colliders(const World& a, const World& b) {
   return std::ranges::equal(a.colliders().colliders, b.colliders().colliders, {}, &Collider::name, &Collider::name);
 }
@@ -139,7 +139,7 @@ bool have_same_mesh(const Body& a, const Body& b) {
          same(a.description.mesh.tets, b.description.mesh.tets) && same(surface_of(a), surface_of(b));
 }
 
-// Refuses what the state cannot be carried over to.
+// Refuses a body to which the state of the run's body cannot be carried over.
 void check_fits(const Body& body, const MovingBody& there, const EarlierFrame& from) {
   const auto refuse = [&](const std::string& why) {
     throw InputError(
@@ -164,7 +164,7 @@ void check_fits(const Body& body, const MovingBody& there, const EarlierFrame& f
   }
 }
 
-// Returns the names of the first that are not among the second.
+// Returns those names that are not in `among`.
 std::vector<std::string> missing(const std::vector<std::string>& names, const std::vector<std::string>& among) {
   std::vector<std::string> result;
   for (const std::string& name : names)
@@ -180,7 +180,7 @@ void check_clock(const EarlierFrame& from, double of_run, double of_film) {
                                              from.run.string(), of_run, of_film)}});
 }
 
-// Hands the states over. Returns notes about bodies that only one of the two has.
+// Hands the states of the run's bodies over to the film's. Returns notes about bodies that only one of the two has.
 std::vector<std::string> take_over(const World& earlier, const EarlierFrame& from, World& world) {
   const std::vector<std::string> there = names_of(earlier.bodies()), here = names_of(world.bodies());
   const std::vector<std::string> added = missing(here, there), gone = missing(there, here);

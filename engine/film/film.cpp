@@ -32,7 +32,7 @@ namespace supple {
 
 namespace {
 
-// Checks that the folder holds all that a film needs which starts at this frame.
+// Checks that the folder holds all that the film needs of the frames of an earlier run.
 void check_folder(const FilmPlan& plan, const LoadedFilm& film, const FilmStart& start) {
   const SceneDef& scene = film.world.script().scene();
   check_save_states(plan.save_states, scene, start.place.path, start.kept_frames());
@@ -151,7 +151,7 @@ bool make_frames(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const
       const PictureTargets targets{folder.frames(),     !plan.film_only, video,
                                    start.kept_frames(), folder.passes(), passes};
       frames->draw_on(pictures.emplace(*stage, plan.gl, shaders_folder(), targets));
-      // The last picture that is kept was made without the next one, or with none.
+      // The passes of the last picture that is kept were made without the next picture.
       if (start.kept_frames() > 0 && pictures->want_next())
         pictures->put_earlier(start.kept_frames() - 1, frames->present_list());
     }

@@ -64,7 +64,8 @@ struct FilmResult {
   std::string stills_message;  // why there are no stills although they were asked for
 };
 
-// Makes the frames and the video. Whatever happens, the frames up to that point are whole, and `rows` describes them.
+// Makes the frames and, where the plan asks for them, the video and the stills. Wherever the film ends, the frames that
+// `rows` of the result describes are whole.
 FilmResult make_film(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
                      const FilmSolvers& solvers);
 

@@ -1,5 +1,5 @@
-// Guides the loop over frames (frame_loop.h) through a film: from the frame with which it begins to its last one, with
-// their rows in the run's log, checkpoints, pictures and a line of progress.
+// Guides the loop over frames (frame_loop.h) through a film, from the frame with which this run begins to the last one.
+// Notes rows, written pictures and checkpoints in the run's log, and shows a line of progress.
 #pragma once
 
 #include <optional>

@@ -11,7 +11,7 @@ namespace supple {
 // Holds the cost of one body.
 struct FrameCost {
   std::vector<double> frame_ms;  // time of the steps of each frame that was finished
-  bool touched = false;          // the body touched a collider at the end of some step
+  bool touched = false;          // the body touched a collider, another body or itself at the end of some step
   std::string failure;           // why a step failed; empty: none did
 };
 

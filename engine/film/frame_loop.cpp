@@ -37,7 +37,8 @@ void FrameLoop::enter(int frame, FrameRow& row) {
   row.change_ms = watch.elapsed_ms();
 }
 
-// Makes the steps of the frame. Returns why a step failed; empty when none did.
+// Makes the steps of the frame. Returns why a step failed, or how the states differ from those of --verify; empty where
+// neither is so.
 std::string FrameLoop::step(int frame, FrameRow& row) {
   const bool measure_error = plan_.error_every > 0 && frame % plan_.error_every == 0;
   row.bodies.resize(recorders_.size());

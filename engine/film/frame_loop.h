@@ -22,12 +22,12 @@ namespace supple {
 class FrameGuide {
  public:
   virtual ~FrameGuide() = default;
-  // Asked before each frame, between which the world may be changed, and go back (FrameLoop::go_to). Returns how the
-  // loop ends; nothing where the world's next frame is wanted.
+  // Is called before each frame, and may change the world or go back (FrameLoop::go_to). Returns how the loop ends;
+  // nothing where the world's next frame is to be made.
   virtual std::optional<FilmEnd> ends() = 0;
-  // Called where a frame begins. What it does counts as part of the frame.
+  // Is called when a frame begins. Traces count what it does as part of the frame.
   virtual void begin() {}
-  // Takes the row of a frame that was made, and whose draw list was put where it is drawn.
+  // Takes the row of a frame that was made, after its draw list, if it has one, was handed to the target.
   virtual void take(FrameRow row) = 0;
 };
 
@@ -38,24 +38,25 @@ class FrameLoop {
   FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder* folder,
             const FilmSolvers& solvers, const FrameRows& earlier);
 
-  // Returns the stage of the pictures; null where the plan wants none. Drawing begins with the target that is given.
+  // Returns the stage of the pictures; null where the plan wants none. draw_on() sets the target that draws on it;
+  // without a target, nothing is drawn.
   const Stage* stage() const { return drawn_ ? &drawn_->stage() : nullptr; }
   void draw_on(DrawListTarget& target) { pictures_ = &target; }
 
-  // Makes the frames that the guide wants. Returns how the loop ended; when a step failed, `message` says why. When the
-  // target refused a list, the target knows why.
+  // Makes the frames that the guide wants. Returns how the loop ended. When a step failed, or a state is not the one of
+  // --verify, `message` says so; when the target refused a list, the target knows why.
   FilmEnd run(FrameGuide& guide, std::string& message);
 
   // Goes to a state of this world, earlier or later. before: the rows of all frames before it.
   void go_to(const WorldState& state, const FrameRows& before);
-  // Draws with these settings over the scene's from now on: path=value, of the field and the look. The target must then
-  // draw on the new stage. Throws InputError, and then changes nothing.
+  // Lets these settings take the place of the scene's in all that is drawn from now on: path=value, of the field and
+  // the look. The target must then draw on the new stage. Throws InputError, and then changes nothing.
   void change_look(const std::vector<std::string>& settings);
-  // Makes steps keep to this run's own budgets of time from now on, wherever those of an earlier run ended.
+  // Ends the repetition of the cuts of an earlier run: from now on, steps keep to this run's own budgets of time.
   void end_repeats();
   // Returns the list of the world as it is, between two frames.
   DrawList present_list();
-  // Puts that list.
+  // Hands that list to the target, if there is one. Returns false when the target has refused it.
   bool show_again();
 
  private:

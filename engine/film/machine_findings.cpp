@@ -121,7 +121,7 @@ Finding disk() {
   return finding;
 }
 
-// Meshes and skins are kept in a folder of the user's; without it, they are made anew for each film.
+// Reports on the user's folder in which meshes and skins are kept; without it, they are made anew for each film.
 Finding cache() {
   const UserCache cache = UserCache::of_user();
   const char* purpose = "keeps meshes and skins from run to run";

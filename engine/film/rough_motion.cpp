@@ -13,8 +13,8 @@ namespace {
 
 constexpr PassEffort few_seconds = {400'000, true, true};
 
-// Returns the effort for a whole film. The coarsest meshes roll and bounce elsewhere than the film's own, so that the
-// pass has as fine ones as it can play in about a second.
+// Returns the effort for a whole film. Bodies of the coarsest meshes roll and bounce elsewhere than the film's own, so
+// the pass has meshes that are as fine as it can play in about a second.
 PassEffort whole_film(const World& world) {
   constexpr double vertex_steps = 120'000;
   constexpr double nearly_all = 0.5;  // of the vertices: the film's own meshes then cost little more, and are made

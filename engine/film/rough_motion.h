@@ -1,5 +1,5 @@
-// Finds what a camera has in view that frames the bodies' whole motion, before the film has been made: by a rough first
-// pass. What it finds is kept in run.json, so that the film can be resumed, and drawn again, with the same camera.
+// Finds by a rough first pass, before a film is made, what a camera must have in view to frame the bodies' whole
+// motion. What is found is kept in run.json, so that the film can be resumed, and drawn again, with the same camera.
 #pragma once
 
 #include "film/film.h"
@@ -7,13 +7,14 @@
 
 namespace supple {
 
-// Finds the outermost points of the motion, where the camera asks for it, or where nothing places the camera and the
-// bodies leave the picture of the start, and where pictures are made. A film that is resumed takes the points that it
-// was begun with. Returns what is to be said about it, which is often nothing. Throws InputError and RunError.
+// Finds the outermost points of the motion and puts them into `film`, where pictures are made and the camera either
+// asks for these points, or is placed by nothing while the bodies leave the picture of the start. A film that is
+// resumed takes the points that it was begun with. Returns what is to be said about this, which is often nothing.
+// Throws InputError and RunError.
 std::string find_framing(const FilmPlan& plan, const FilmStart& start, const FilmSolvers& solvers, LoadedFilm& film);
 
-// Tells whether a scene leaves to the program what its camera frames, and a body is not whole in a picture of the pass
-// that shows the start.
+// Tells whether a scene leaves to the program what its camera frames, and a camera that frames the start does not show
+// all of each body in all frames of the pass.
 bool leaves_picture(const RoughPass& pass, DrawnFilm& drawn);
 
 }  // namespace supple

@@ -18,12 +18,12 @@ class EventLog {
   void add(const std::string& name, const std::string& data);
   // Adds an event whose newest form is part of what a page is told first.
   void keep(const std::string& name, const std::string& data);
-  // Keeps without an event what a page is told first.
+  // Sets a part of what a page is told first, without an event.
   void keep_silently(const std::string& name, const std::string& data);
 
   // Returns the text of all events after number `seen` as a stream of server-sent events, and moves `seen` on to the
-  // last one. A reader that begins (seen: 0), or has missed some, gets the kept events first, under the name "hello" as
-  // one object, with `writer` in it. Empty where there is nothing new.
+  // last one. A reader that begins (seen: 0), or has missed some, gets one event "hello" in their place: an object of
+  // all kept data, with `writer` in it. Empty where there is nothing new.
   std::string text_after(std::uint64_t& seen, bool writer) const;
 
   // Sets what is called after each event, on the thread that adds it.

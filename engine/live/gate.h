@@ -16,7 +16,7 @@ namespace supple {
 
 // Holds what the gate reads of a request. Texts are empty where the request does not have them.
 struct LiveRequest {
-  std::string_view method, path;  // of the path what stands before '?'
+  std::string_view method, path;  // the path is what stands before '?'
   std::string_view host, origin;  // headers
   std::string_view length;        // header Content-Length
   std::string_view writer;        // X-Writer, or `writer` of the query
@@ -40,8 +40,9 @@ class Gate {
   // token: the secret of the URL. reach: from where the server can be reached.
   Gate(std::string token, Reach reach) : token_(std::move(token)), reach_(reach) {}
 
-  // Returns what the request asks for, or why it is refused. A page elsewhere cannot pass: a name that leads here by a
-  // trick of its name server is no name of this host, and its scripts say where they come from.
+  // Returns what the request asks for, or why it is refused. Pages of other sites cannot pass: a name of theirs that
+  // their name server leads to this host (DNS rebinding) is no name of this host, and requests of their scripts say
+  // where they come from.
   std::variant<Route, Answer> admit(const LiveRequest& request) const;
   const std::string& token() const { return token_; }
 
@@ -52,7 +53,7 @@ class Gate {
   Reach reach_;
 };
 
-// Counts events, of which so many are allowed in a second, and after a rest as many at once.
+// Counts events, and allows so many in a second, and so many at once after a rest (a token bucket).
 class RateLimit {
  public:
   using Clock = std::chrono::steady_clock;
@@ -61,7 +62,7 @@ class RateLimit {
   bool allows(Clock::time_point now);
 
  private:
-  double a_second_, at_once_, allowed_;  // the last: as time has added them
+  double a_second_, at_once_, allowed_;  // the last: how many are left at counted_at_
   Clock::time_point counted_at_;
 };
 
@@ -70,12 +71,13 @@ class Steering {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // Returns the key of the page that may steer from now on; nothing where another one does.
+  // Lets the page that asks steer from now on, and returns its key; nothing where another page steers.
   std::optional<std::string> claim(Clock::time_point now);
   bool is_writer(std::string_view key) const;
-  // The page that steers keeps a stream of events open.
+  // Counts a stream of events that opens. The page that steers keeps one open.
   void connected(std::string_view key);
-  // Returns whether nobody steers any more, unless the page comes back.
+  // Counts a stream of events that has closed. Returns whether it was the last one of the page that steers: then nobody
+  // steers any more, unless the page comes back.
   bool disconnected(std::string_view key, Clock::time_point now);
 
  private:

@@ -15,7 +15,7 @@ struct ListeningSocket {
   std::string host;     // address and port, as URLs have them
 };
 
-// Throws InputError where the address is none, or cannot be listened to.
+// Opens a socket that listens at an address. Throws InputError where the address is none, or cannot be listened to.
 ListeningSocket listen_to(const LiveAddress& address);
 
 }  // namespace supple

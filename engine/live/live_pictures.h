@@ -36,8 +36,8 @@ class LivePictures : public DrawListTarget {
   // Tells the number of the last input that lists from now on show.
   void note_input(std::uint64_t number);
 
-  // Changes the view, which the next picture has, with a new one of the same list where no other comes. input: the
-  // number of this input.
+  // Changes the view. The next picture has it: that of the next list or, where none comes, a new one of the last list.
+  // input: the number of the command that does this.
   void change_view(const std::function<void(LiveView&)>& change, std::uint64_t input);
   // Returns the camera that the last picture was seen through, and whether it is the page's own.
   Camera seen() const;

@@ -29,7 +29,7 @@ class LiveView {
   Camera& own();
 
   Camera seen_;
-  Vec3 moved_ = Vec3::Zero();  // of what is followed, since the start, when seen_ was made [m]
+  Vec3 moved_ = Vec3::Zero();  // how far what is followed had moved since the start when seen_ was made [m]
   std::optional<Camera> own_;  // as it was when moved_ was noted
 };
 

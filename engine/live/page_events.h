@@ -29,14 +29,16 @@ class PageEvents {
   // Both must outlive this object.
   PageEvents(EventLog& log, const World& world) : log_(log), world_(world) {}
 
-  // record: the file of the replay; empty: none.
+  // Tells what is played. record: the file of the replay; empty: none.
   void tell_scene(const std::string& record);
   void tell_state(const PageState& state);
-  // Tells the values that have changed since the last call; or all, where others can change now.
+  // Tells the values that have changed since the last call; or all controls, where other values can change than at that
+  // call.
   void tell_controls();
   // Tells all that is wrong, where that has changed.
   void tell_words(const std::vector<std::string>& words);
-  // rate: how fast the film runs, over the speed that is wanted; picture_ms: what drawing and compressing took [ms].
+  // Tells of a frame that was made. rate: how fast the film runs, over the speed that is wanted; picture_ms: what
+  // drawing and compressing took [ms].
   void tell_frame(const FrameRow& row, double rate, double picture_ms);
   void say(const std::string& text);
   // Tells that no more frames come, and why.

@@ -14,7 +14,7 @@ struct Pick {
   std::size_t body = 0;
   Vec3 place;                 // that the pointer points at [m]
   std::vector<int> vertices;  // around it, by their numbers in the input file, counted from 1
-  double stiffness = 0;       // for a spring of each, so that they follow a pointer through the body's resistance [N/m]
+  double stiffness = 0;       // of a spring at each, so that they follow a pointer against the body's resistance [N/m]
 };
 
 // Looks along the ray through a place of a picture, from its upper left corner, 0 to 1. aspect: the picture's width

@@ -16,7 +16,7 @@ namespace supple {
 namespace {
 
 constexpr std::chrono::seconds between_writes{1};
-constexpr int rest = 10;                // times as long as a write took, there is no other
+constexpr int rest = 10;                // for so many times as long as a write took, there is no other
 constexpr std::size_t most_takers = 8;  // of one text
 
 // Returns the file beside a replay for a scene that no other file has (Script::replay_files).

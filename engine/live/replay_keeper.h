@@ -51,7 +51,7 @@ class ReplayKeeper {
   using Clock = std::chrono::steady_clock;
   struct Kept {
     ReplayNotes notes;
-    bool apart = false;  // from what the file has
+    bool apart = false;  // whether what the file has is kept beside it
   };
 
   void work();

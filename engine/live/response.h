@@ -21,7 +21,7 @@ Response with_headers(MHD_Response* response, const char* type);
 Response response_of(const void* bytes, std::size_t size, const char* type);
 Response response_of(const std::string& text, const char* type = "application/json");
 
-// Sends a response, and counts as the result of a request's handler.
+// Sends a response. Returns what the handler of a request is to return to the library.
 MHD_Result send(MHD_Connection* connection, int status, const Response& response);
 MHD_Result send(MHD_Connection* connection, const Answer& answer);
 

@@ -68,7 +68,7 @@ struct Exchange : Suspendable {
   Route route = Route::page;
   std::string writer, body;
   std::uint64_t after = 0;
-  Clock::time_point until;  // a picture comes
+  Clock::time_point until;  // when it stops waiting for a picture
   bool is_posted = false;   // the command waits for its answer
   std::optional<Answer> answer;
 };
@@ -186,7 +186,7 @@ LiveServer::Connections::~Connections() {
   {
     const std::lock_guard lock(mutex_);
     closes_ = true;
-    while (!suspended_.empty()) resume(**suspended_.begin());  // the daemon cannot stop while one is
+    while (!suspended_.empty()) resume(**suspended_.begin());  // the daemon cannot stop while a connection is suspended
     beats_.notify_one();
   }
   beating_.join();

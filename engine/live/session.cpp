@@ -420,7 +420,7 @@ void LiveSession::set_budgets(double ms) {
   for (const auto& [path, before] : budgets_before_) change(path, fmt::format("{:.2f}", ms), 0);
 }
 
-// Gives steps as much more or less time as the last frames were too quick or too slow.
+// Gives steps more time where the last frames were too quick, and less where they were too slow.
 void LiveSession::adjust_budget() {
   constexpr double used = 0.95, least = 0.3;  // of the time that a frame has; of a budget [ms]
   std::vector<double> took(frame_ms_.begin(), frame_ms_.end());

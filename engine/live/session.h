@@ -45,7 +45,8 @@ class LiveSession : public FrameGuide {
   LiveSession(LiveDesk& desk, World& world, FrameLoop& loop, ReplayKeeper& keeper, bool starts_paused);
   ~LiveSession() override;
 
-  // Plays until the program is interrupted. Returns why that was not the end: pictures can no longer be drawn.
+  // Plays until the program is interrupted, or pictures can no longer be drawn. Returns why they cannot; empty where
+  // they can.
   std::string play();
 
   std::optional<FilmEnd> ends() override;
@@ -53,7 +54,7 @@ class LiveSession : public FrameGuide {
 
   // Tells pages what is played. record: the file of the replay; empty: none.
   void tell_scene(const std::string& record) { events_.tell_scene(record); }
-  // Tells whether something was done that no replay has that was asked for since.
+  // Tells whether something was done that the last replay that was asked for does not have.
   bool has_unsaved_edits() const;
 
   int frames() const { return timeline_.frames(); }
@@ -110,15 +111,15 @@ class LiveSession : public FrameGuide {
   std::vector<Release> pending_;      // grabs that were dropped before they took hold
   std::vector<Pin> pins_;             // grabs that hold without a pointer, or did
 
-  PageState state_;  // but for what tell_state() finds
+  PageState state_;  // tell_state() fills in what it can find out itself
   bool steps_once_ = false;
   Clock::time_point due_;                // when the next frame may begin
   Clock::time_point begun_;              // when the last frame began
   std::deque<Clock::time_point> ended_;  // when the last frames ended, since the film last began to run
   std::deque<double> frame_ms_;          // times of the last frames, without waiting [ms]
 
-  double budget_ms_ = 0;                                             // that keep_rate() has set
-  std::vector<std::pair<std::string, std::string>> budgets_before_;  // the paths of budgets, and their values before it
+  double budget_ms_ = 0;                                             // the budget of a step that keeps the rate [ms]
+  std::vector<std::pair<std::string, std::string>> budgets_before_;  // by path: budgets before keep_rate()
 
   std::shared_ptr<std::atomic<std::size_t>> saved_;  // number of edits in the last replay that was asked for
   bool controls_changed_ = false;

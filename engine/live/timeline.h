@@ -1,6 +1,6 @@
 // Remembers what a live session needs to go back to any of its frames: states of some frames, what was done, and where
-// budgets of time ended steps. A frame between two states is found by making those before it again, with all that was
-// done in them.
+// budgets of time ended steps. A frame between two states is found by making the frames from the earlier state on
+// again, with all that was done in them.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,13 @@
 
 namespace supple {
 
-// Describes an edit that a replay repeats. frames: how many frames there were before it.
+// Describes the end of a grab.
 struct Release {
   std::string body, handle;
 };
+// Describes an edit that a replay repeats.
 struct TimedEdit {
-  int frames;
+  int frames;  // how many there were before it
   std::variant<TimedChange, LiveGrab, Release> what;
 };
 
@@ -33,7 +34,8 @@ class Timeline {
   void add(const FrameRow& row, const World& world);
   void add(TimedEdit edit) { edits_.push_back(std::move(edit)); }
 
-  // Returns the last state that is kept with at most so many frames before it. Its edits are those that were in force.
+  // Returns the last state that is kept with at most so many frames before it. Its edits are those of `all`, the
+  // world's edits, that were made before it; grabs that were released later hold in them.
   WorldState state_before(int frames, const LiveEdits& all) const;
   // Makes frames of this timeline again, from the one that the world is at, with all that was done in them. Returns
   // false where `stops` said so between two frames. Throws RunError where a step fails.
@@ -52,9 +54,9 @@ class Timeline {
 
   PlayedSession played_;            // of all frames
   std::vector<WorldState> states_;  // of some of them, in their order, without edits
-  std::vector<TimedEdit> edits_;    // in its order
+  std::vector<TimedEdit> edits_;    // in their order
   int every_ = 10;                  // frames between two states that are kept
-  std::size_t bytes_ = 0;           // of a state
+  std::size_t bytes_ = 0;           // of the largest state
 };
 
 }  // namespace supple

@@ -1,6 +1,7 @@
-// Moves the handles that go with a collider or with another body (`attach` of a handle). A collider that deforms takes
-// them along by its surface, any other one by its pose, and a body by its surface: where they are at rest when the
-// clock is at 0, they stay beside it. They pull at nothing: what they go with does not feel them.
+// Moves the handles that go with a collider or with another body (`attach` of a handle). A collider that deforms
+// carries them by its surface, any other collider by its pose, and a body by its surface. When the clock is at 0, the
+// handles' vertices are meant to be at their places at rest; from then on these places go along with the carrier. What
+// carries the handles does not feel them.
 #pragma once
 
 #include <memory>
@@ -15,12 +16,12 @@ namespace supple {
 
 class AttachedHandles {
  public:
-  // body: whose handles these are, by its number among the bodies. All that is passed must outlive this object.
+  // body: the number of the body that has these handles. All that is passed must outlive this object.
   AttachedHandles(const std::vector<std::unique_ptr<MovingBody>>& bodies, std::size_t body, const CollisionSet& set);
 
   bool empty() const { return carried_.empty(); }
-  // Puts the targets of attached handles at a time [s], in the order of Model::handled. Bodies are taken to go on with
-  // the velocities that they have.
+  // Sets the rows of the attached handles in `targets`, which are in the order of Model::handled, for a time [s].
+  // Bodies that carry handles are taken to go on with the velocities that they have.
   void put(double time, Positions& targets) const;
 
  private:

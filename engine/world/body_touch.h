@@ -10,11 +10,11 @@ namespace supple {
 // Tells how two bodies touched each other, or one touched itself, at the end of a step.
 struct BodyTouch {
   std::size_t a, b;           // the bodies, the earlier one first; equal where a body touched itself
-  int contacts = 0;           // points of either body that touch the other
-  double depth = 0;           // of the deepest of these points in the other body [m]
+  int contacts = 0;           // number of contacts in which the two touch, of vertices and of edges
+  double depth = 0;           // of the deepest of these contacts, from the surface that is touched [m]
   Vec3 force = Vec3::Zero();  // of a on b [N]
   double pressing = 0;        // sum of the sizes of the contacts' forces [N]
-  Vec3 place = Vec3::Zero();  // the mean of where they press, by force [m]
+  Vec3 place = Vec3::Zero();  // mean of the places of the contacts, weighted by their forces [m]
 };
 
 }  // namespace supple

@@ -39,11 +39,11 @@ Positions free_motion(const Model& model, const StepInputs& inputs, const State&
 
 struct IslandFinder::Way {
   Positions y;               // n x 3 [m]
-  Bounds swept;              // of the body from q to y
-  Vec3 mean = Vec3::Zero();  // its mean motion [m]
+  Bounds swept;              // box of the body on its way from q to y
+  Vec3 mean = Vec3::Zero();  // the body's mean motion [m]
   AirForces air;
   std::uint64_t structure = 0;
-  double layer = 0;  // of a sheet, or between a surface and what is drawn: contact holds others there [m]
+  double layer = 0;  // of a sheet, or the overhang of what is drawn: how far away contact keeps others [m]
   mutable std::unique_ptr<MovingSurface> surface;
   mutable bool is_moved = false;  // whether the surface goes the way of this step
 };
@@ -98,12 +98,12 @@ bool IslandFinder::may_touch(std::size_t a, std::size_t b, double pushed) const 
         ways_[b].swept.lower[k] - margin > ways_[a].swept.upper[k])
       return false;
   }
-  // Bodies that go the same way meet where a collider stops the first of them, so all of their ways count then.
+  // Bodies that go the same way meet where a collider stops the first of them, so their whole ways count then.
   const Vec3 carried = may_be_stopped(a) || may_be_stopped(b) ? Vec3(Vec3::Zero()) : ways_[a].mean;
   return surface_of(a).may_meet(surface_of(b), margin, carried) || is_within(a, b) || is_within(b, a);
 }
 
-// Tells whether a body begins the step wholly within another one, far from its surface.
+// Tells whether a body begins the step wholly within another one; their surfaces may be far from each other.
 bool IslandFinder::is_within(std::size_t inner, std::size_t outer) const {
   const Model& model = bodies_[inner]->model();
   if (!bodies_[outer]->model().parts.front().solid) return false;
@@ -114,7 +114,7 @@ bool IslandFinder::is_within(std::size_t inner, std::size_t outer) const {
   return place && place->distance < 0;
 }
 
-// Tells whether a body may come to a collider on its way.
+// Tells whether a body may come to a collider on its way; a collider that moves counts wherever it is.
 bool IslandFinder::may_be_stopped(std::size_t body) const {
   const StepInputs& inputs = bodies_[body]->inputs();
   const Vec3 center = ways_[body].swept.center();
@@ -141,7 +141,7 @@ std::vector<std::vector<std::size_t>> IslandFinder::find() {
   if (pairs.empty()) return lists_of(groups);
   const Zone zone("islands");
   find_ways();
-  // An island may push its bodies off their ways, as far as they go beside each other, and into others.
+  // The bodies of an island may push each other off their ways, by as much as their ways differ, and so into others.
   std::vector<double> pushed(count, 0.0);
   for (bool grows = true; grows;) {
     grows = false;

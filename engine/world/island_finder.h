@@ -1,6 +1,6 @@
 // Finds which bodies of a world may touch in a step, by the ways that they would go if nothing touched them. Bodies
-// that may touch, directly or through others, are an island. Islands depend on the states where a step begins alone, so
-// that a film that is resumed finds the same ones.
+// that may touch, directly or through others, are an island. Islands depend on nothing but the states at the beginning
+// of the step, so that a film that is resumed finds the same ones.
 #pragma once
 
 #include <memory>
@@ -19,8 +19,8 @@ class IslandFinder {
   IslandFinder(const SceneDef& scene, const std::vector<std::unique_ptr<MovingBody>>& bodies);
   ~IslandFinder();
 
-  // Returns the islands of the step that was prepared, each as its bodies in the order of the scene, in the order of
-  // their first bodies. Bodies that nothing may touch are islands of their own.
+  // Returns the islands of the step that was prepared, in the order of their first bodies. Each is a list of its bodies
+  // in the order of the scene. A body that no other one may touch is an island of its own.
   std::vector<std::vector<std::size_t>> find();
 
  private:

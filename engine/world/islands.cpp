@@ -44,7 +44,7 @@ struct Islands::Own {
   std::unique_ptr<OwnSurface> surface;  // of a solid
   std::unique_ptr<OwnSheet> sheet;      // of a cloth
   std::unique_ptr<MovingSurface> moving;
-  bool touched = false;  // in the last step: then the next one is looked at first, which saves work alone
+  bool touched = false;  // in the last step; the next one is then tested before it is made, which saves work alone
 };
 
 Islands::Islands(const SceneDef& scene, const std::vector<std::unique_ptr<MovingBody>>& bodies, const Solvers& solvers,
@@ -83,8 +83,9 @@ Islands::Together& Islands::together(const std::vector<std::size_t>& island) {
   return *together_.front();
 }
 
-// Islands are solved by the quasi-Newton method, with the settings of their first body and as many iterations as any
-// body asks for. Other methods have matrices without room for contacts between bodies.
+// Returns the inputs of an island's step. It is solved by the quasi-Newton method, because matrices of other methods
+// have no room for contacts between bodies, with the settings of the first body and as many iterations as any body asks
+// for.
 StepInputs Islands::inputs_of(const std::vector<std::size_t>& island, const Selves& selves, const Model& joined) const {
   StepInputs inputs = bodies_[island.front()]->inputs();
   inputs.solver = solvers_.settings(Method::quasi_newton, scene_.bodies[island.front()].solver.settings);
@@ -125,8 +126,9 @@ StepInputs Islands::inputs_of(const std::vector<std::size_t>& island, const Selv
 
 namespace {
 
-// Returns what a step of several bodies was for one of them: times by its share of the vertices, forces, contacts and
-// the estimated error of motion of its own; iterations, energies and the error of equation 12 are those of all.
+// Returns the report of one body for a step of several. Times are the body's share of the step, by free vertices.
+// Forces, contacts in force and the estimated error of motion are the body's own, where a contact between two bodies
+// counts in both. Iterations, energies, the error of equation 12 and all else are those of the whole step.
 StepReport report_of_part(const Model& joined, std::size_t number, const StepReport& all,
                           const std::vector<Contact>& contacts, const Positions& x) {
   const Part& part = joined.parts[number];
@@ -151,7 +153,8 @@ StepReport report_of_part(const Model& joined, std::size_t number, const StepRep
 
 namespace {
 
-// Returns where the point of a contact between two surfaces is; the vertices of the other place have negative weights.
+// Returns the place of a contact between two surfaces, on the one whose vertices have positive weights; those of the
+// other surface have negative ones.
 Vec3 place_of_point(const ContactStencil& stencil, const Positions& x) {
   Vec3 place = Vec3::Zero();
   for (int k = 0; k < stencil.count; ++k) place += std::max(0.0, stencil.weight[k]) * x.row(stencil.vertex[k]);
@@ -225,19 +228,20 @@ int Islands::step(const std::vector<std::size_t>& island) {
   return failed;
 }
 
-// Which bodies touch themselves in a step must follow from the states alone, and not from whether a body was looked at
-// before its step or after it: those that begin in themselves come first, then those that come through themselves in
-// the step of these. A step with a budget of time is made once, by what begins in itself alone: its cuts are repeated
-// in other runs, and those of a step that is thrown away are not known there.
+// Makes the step of an island, in which those bodies that touch themselves have contact with themselves. Which ones
+// these are must follow from the states alone, and not from whether a body was tested before its step or after it:
+// those that begin inside themselves come first, then those that come through themselves in a step in which the first
+// ones have this contact. A step with a budget of time is made once, with contact of those that begin inside themselves
+// alone: its cuts are repeated in other runs, where those of a step that is thrown away are not known.
 int Islands::step_without_bounce(const std::vector<std::size_t>& island) {
-  std::vector<std::size_t> able;  // members
+  std::vector<std::size_t> able;  // the island's members that meet themselves
   for (std::size_t m = 0; m < island.size(); ++m)
     if (meets_itself(scene_.bodies[island[m]])) able.push_back(m);
   if (able.empty()) return step_once(island, Selves(island.size(), 0));
   std::vector<State> before;
   for (const std::size_t b : island) before.push_back(bodies_[b]->state());
   Selves selves(island.size(), 0);
-  bool begun = false;  // whether those that begin in themselves are known
+  bool begun = false;  // whether those that begin inside themselves are known
   const auto find_those_that_begin_so = [&] {
     bool any = false;
     for (const std::size_t m : able) {
@@ -281,10 +285,10 @@ int Islands::step_without_bounce(const std::vector<std::size_t>& island) {
   return -1;
 }
 
-// With all threads inside a step, some 0.3 of it is shared. Which bodies come first changes no bits, so that the time
-// of their last steps may decide.
+// Threads that all work inside one step share some 0.3 of its time; one of them does the rest. Neither the choice of
+// the bodies nor their order changes any bits, so that measured times may decide both.
 std::vector<std::size_t> Islands::find_independent(const std::vector<std::vector<std::size_t>>& islands) const {
-  constexpr double shared = 0.3, an_iteration = 1e-4;  // [ms] an element, in the first step
+  constexpr double shared = 0.3, an_iteration = 1e-4;  // the second: by element, where no step was made yet [ms]
   if (threads_ == nullptr || threads_->count() == 1) return {};
   std::vector<std::size_t> independent;
   double sum = 0, most = 0;
@@ -294,7 +298,7 @@ std::vector<std::size_t> Islands::find_independent(const std::vector<std::vector
   };
   for (const std::vector<std::size_t>& island : islands) {
     const std::size_t b = island.front();
-    if (has_time_budget(bodies_[b]->inputs())) return {};  // the others would take of its time
+    if (has_time_budget(bodies_[b]->inputs())) return {};  // steps of others at the same time would use up its budget
     if (island.size() > 1 || (owns_[b].touched && meets_itself(scene_.bodies[b]))) continue;
     independent.push_back(b);
     sum += work(b);

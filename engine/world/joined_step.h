@@ -1,4 +1,4 @@
-// Defines what a world tells of the step that several bodies made together.
+// Defines what a world tells of the step of a joined model (islands.h).
 #pragma once
 
 #include <cstddef>

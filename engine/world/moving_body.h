@@ -25,8 +25,9 @@ struct SceneDef;
 
 class MovingBody {
  public:
-  // Puts the body into the scene's start state. `model` must have been built from the body; it and the description
-  // change when a handle grabs or releases. All that is passed by reference must outlive this object.
+  // Puts the body into the scene's start state. `model` must have been built from the body. The model and the
+  // description in the body change when a handle grabs or releases. All that is passed by reference must outlive this
+  // object.
   MovingBody(const SceneDef& scene, Body& body, Model& model, const CollisionSet& set, const Solvers& solvers,
              Threads* threads);
   ~MovingBody();
@@ -53,7 +54,8 @@ class MovingBody {
   void keep_to_clock();
   // Tells whether the last step was made with the as-rigid-as-possible material.
   bool untangled() const { return untangled_; }
-  // Tells whether the last step was made together with other bodies (islands.h).
+  // Tells whether the last step was that of a joined model (islands.h): together with other bodies, or with contact of
+  // the body with itself.
   bool is_in_island() const { return is_in_island_; }
 
   // Puts the body into one of its states, earlier or later. The model's values are recomputed where other handles hold
@@ -67,7 +69,7 @@ class MovingBody {
 
   // Takes over a changed scene and body definition, and recomputes what the change requires.
   void apply(const ChangeCost& cost);
-  // Lets a function put the targets of handles that go with something else, at a time [s] (attached_handles.h).
+  // Sets the function that puts the targets of attached handles at a time [s] (attached_handles.h).
   void attach(std::function<void(double time, Positions& targets)> put) { put_attached_ = std::move(put); }
 
   // Computes the inputs of a step, lets handles grab and release when their time has come, and lets the body flow by
@@ -79,21 +81,23 @@ class MovingBody {
   // with it every direction, stays the same.
   const StepReport& step();
 
-  // These make the prepared step together with other bodies (islands.h). model_of_step: the model that is to be joined,
-  // the as-rigid-as-possible one where step() would take that. take_step: takes over the end of the step, unless the
-  // report says that it failed, and leaves the workspace as a step of the body alone would: x, v: n x 3 in the body's
-  // order; contacts: those that act on the body.
+  // These two make the prepared step as that of a joined model (islands.h).
+  //
+  // Returns the model that is to be joined: the as-rigid-as-possible one where step() would take that.
   const Model& model_of_step();
+  // Takes over the end of the step, unless the report says that it failed, and leaves the workspace as a step of the
+  // body alone would. x, v: n x 3 in the order of the body's model [m], [m/s]; time: at the end [s]; contacts: those
+  // that act on the body.
   void take_step(const Positions& x, Positions v, double time, std::vector<Contact> contacts, StepReport report);
   // Adds to the last step's time [ms].
   void add_time(double ms);
 
   const StepReport& step_untangled();
   void calm_down();
-  // Computes the targets at a time [s], when so much is done of a change that is spread over the frame.
+  // Computes the targets at a time [s]. change: the share that is done then of a change that is spread over the frame.
   void targets_at(double time, double change, Positions& targets) const;
-  // Computes how far the seams are open at the end of a step from one time to another [s], and at its middle, where it
-  // is the mean of both ends: implicit midpoint then ends where seams are meant to be.
+  // Returns how far the seams are open at the end and in the middle of a step from one time to another [s]. The middle
+  // has the mean of both ends: implicit midpoint then ends where seams are meant to be.
   std::vector<SeamOpening> seams_between(double from, double to) const;
   void switch_handles(double time);
   // Makes the description's handles hold as the state says. Returns false when they held so already.

@@ -17,9 +17,9 @@ struct Restitution::Touching {
   std::int32_t collider = -1, body = -1;
   Vec3 push = Vec3::Zero();   // on the body [N]
   double pressing = 0;        // sum of the sizes of the forces [N]
-  Vec3 place = Vec3::Zero();  // the mean of where they press, by force [m]
-  Vec3 way = Vec3::Zero();    // the mean way in the step of what touches, against the collider [m]
-  // Those that touch a collider and are furthest along x, y, z, -x, -y, -z [m].
+  Vec3 place = Vec3::Zero();  // mean of the places that touch, weighted by force [m]
+  Vec3 way = Vec3::Zero();    // mean way of these places in the step, relative to the collider [m]
+  // The places that touch a collider and are furthest along x, y, z, -x, -y, -z [m].
   std::array<Vec3, 6> corners = {};
 
   bool is_of(const Bounce& bounce) const { return collider == bounce.collider && body == bounce.body; }
@@ -112,8 +112,8 @@ std::vector<Restitution::Touching> Restitution::touchings(std::size_t owner,
   return result;
 }
 
-// Takes the share of a step of the approach, and begins to let the two leave when it is over. gained: by how much they
-// came together more slowly after the step; speed: at which they go apart after it [m/s].
+// Notes what a step takes of the approach, and lets the two begin to leave when the approach is over. gained: by how
+// much they come together more slowly after the step than before it; speed: with which they go apart after it [m/s].
 // Returns false where they do not bounce.
 bool Restitution::approach(std::size_t owner, Bounce& bounce, double gained, double speed) const {
   constexpr double stopped = 0.1;  // of the approach: contact stops the rest of it in many steps
@@ -173,9 +173,9 @@ double Restitution::goal_of(std::size_t owner, Bounce& bounce) const {
   return std::max(speed, std::min(speed + due - given_already, bounce.target));
 }
 
-// Returns all that touches in a step, with its goals: bounces that leave get what is due to them, and the rest shall
-// not come together faster, as a mat on the ground on which a ball bounces. Cloth, which has no motion as a whole, is
-// left out.
+// Returns a push for each bounce that leaves, with what is due to it as its goal, and for all else that touches in the
+// step, such as a mat on the ground off which a ball bounces: these shall not come together faster. Cloth, which has no
+// motion as a whole, is left out. Empty where no bounce leaves.
 std::vector<Restitution::Push> Restitution::pushes(const std::vector<std::size_t>& island,
                                                    const std::vector<std::vector<Touching>>& touched) {
   std::vector<Push> all;
@@ -255,8 +255,8 @@ Bounce Restitution::place_of(std::size_t owner, const Touching& touching) const 
   return at;
 }
 
-// Begins the bounces of a body, and goes on with those that have begun. One off a body that is too far away for a
-// common step is over.
+// Begins the bounces of a body, and goes on with those that have begun. A bounce off a body that is too far away to be
+// in the island is over.
 void Restitution::go_on(std::size_t owner, const std::vector<std::size_t>& island,
                         const std::vector<Touching>& touchings) {
   const Model& model = bodies_[owner]->model();
@@ -273,7 +273,7 @@ void Restitution::go_on(std::size_t owner, const std::vector<std::size_t>& islan
     bounce = begun.insert(bounce, at);
     const double gravity = gravity_between(owner, *bounce), step = model.time_step;
     const double speed = -bounce->normal.dot(velocity_between(owner, *bounce, before_));
-    constexpr double creeping = 0.01;  // of its size in a second: what rests, or is pressed to rest
+    constexpr double creeping = 0.01;  // body sizes in a second: what rests, or is pressed to rest, moves by less
     if (speed <= 2 * step * scene_.gravity.norm() + creeping * model.size || coefficient(owner, *bounce) == 0) {
       begun.erase(bounce);
       continue;
@@ -297,7 +297,8 @@ void Restitution::go_on(std::size_t owner, const std::vector<std::size_t>& islan
   });
 }
 
-// Sets a body's velocities after its gifts. stepped: how it moved after the step.
+// Adds what the impulses have changed of a body's rigid motion to its velocities. stepped: its rigid motion after the
+// step, without the impulses.
 void Restitution::set_velocities(std::size_t body, const RigidMotion& stepped) {
   RigidMotion change = after_[body];
   change.linear -= stepped.linear;

@@ -12,9 +12,9 @@
 // begins to turn. Impulses of all that touch in an island are found together: many tiles are as one floor, and a ball
 // bounces off a light mat that lies on the ground. The energy is counted (Bounces::given).
 //
-// What comes together more slowly than the speed that gravity gives in two steps does not bounce, as in Mueller,
-// Macklin, Chentanez, Jeschke, Kim 2020, "Detailed rigid body simulation with extended position based dynamics",
-// section 3.6: otherwise nothing would come to rest.
+// What comes together more slowly than the speed that gravity gives in two steps and a hundredth of the body's size in
+// a second, added up, does not bounce, as in Mueller, Macklin, Chentanez, Jeschke, Kim 2020, "Detailed rigid body
+// simulation with extended position based dynamics", section 3.6: otherwise nothing would come to rest.
 #pragma once
 
 #include <memory>
@@ -33,8 +33,9 @@ class Restitution {
   // Both must outlive this object. bodies: those of the scene, in its order.
   Restitution(const SceneDef& scene, const std::vector<std::unique_ptr<MovingBody>>& bodies);
 
-  // To be called before and after each step of bodies that make it together. Steps of different bodies may be made at
-  // the same time. touches: of these bodies, and maybe of others. Both do nothing where nothing bounces.
+  // Lets the bodies of an island bounce: the first function is to be called before each step of the island, the second
+  // after it. Both do nothing where nothing bounces. Different islands may make their steps at the same time. touches:
+  // those of this island's step, and maybe of others.
   void before_step(const std::vector<std::size_t>& island);
   void after_step(const std::vector<std::size_t>& island, const std::vector<BodyTouch>& touches);
 

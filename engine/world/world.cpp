@@ -22,11 +22,11 @@ struct World::Parts {
   std::vector<std::unique_ptr<MovingBody>> moving;         // by body, once the world is started
   std::vector<std::unique_ptr<AttachedHandles>> attached;  // of bodies that have such handles
   std::unique_ptr<Islands> islands;                        // once the world is started
-  int frame = -1;                                          // that was entered last
-  int substep = 0;                                         // of that frame: the next one to be made
-  bool has_failed = false;                                 // a step of that frame
-  bool has_stepped = false;                                // since the start, or the last state that was restored
-  double saved_ms = 0;                                     // of the frame's steps
+  int frame = -1;                                          // the frame that was entered last; -1: none
+  int substep = 0;                                         // the next substep of that frame to be made
+  bool has_failed = false;                                 // whether a step of that frame has failed
+  bool has_stepped = false;                                // whether a step was made since a state was last restored
+  double saved_ms = 0;                                     // what World::saved_ms() returns [ms]
 
   Parts(std::optional<Script> played, SceneDef at_start, std::vector<Body> assembled)
       : script(std::move(played)),
@@ -35,8 +35,8 @@ struct World::Parts {
         bodies(std::move(assembled)),
         colliders(collision_set(scene)) {}
 
-  // In the frame of a change, positions are interpolated over the substeps, from the values in `earlier` to the new
-  // ones. When that frame is over, only the new ones count.
+  // Forgets the values before the last changes. In the frame of a change, positions are interpolated over the substeps,
+  // from these values to the new ones; when that frame is over, only the new ones count.
   void end_last_changes() {
     colliders.earlier.clear();
     for (Body& body : bodies) body.earlier.clear();
@@ -56,10 +56,10 @@ struct World::Parts {
     end_last_changes();
   }
   void attach_handles();
-  // Makes the step of an island that was prepared. Returns whether it succeeded. number: of the substep in its frame.
-  // is_known: whether the watch has been told that it was prepared.
+  // Makes the step of an island that was prepared. Returns whether it succeeded. number: the number of the substep in
+  // its frame. is_known: whether the watch has been told that it was prepared.
   bool step(const std::vector<std::size_t>& island, int number, const StepWatch& watch, bool is_known);
-  // Makes the steps of all islands.
+  // Makes the steps of all islands. Returns whether they succeeded.
   bool step_all(const std::vector<std::vector<std::size_t>>& all, int number, const StepWatch& watch);
 };
 
@@ -212,7 +212,7 @@ void World::grab(LiveGrab grab) {
     script.set_edits(std::move(before));
     throw InputError(std::move(problems));
   }
-  // Vertices that another handle has are left out once and for all, whenever that one ends.
+  // Vertices that another handle has are left out for good, also after that handle has ended.
   LiveEdits edits = script.edits();
   edits.grabs.back().vertices.clear();
   for (const std::int32_t v : body.description.handles.back().vertices) edits.grabs.back().vertices.push_back(v + 1);

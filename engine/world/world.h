@@ -1,6 +1,7 @@
-// Represents a scene in time. A world owns its bodies, their models and states, the colliders, and their motions from
-// outside; it applies a replay's changes, makes the steps, and is saved and restored. Films, redrawn films, stored
-// states, benchmarks, estimates of cost and other programs all move a scene here, so that they agree to the last bit.
+// Represents a scene in time. A world owns its bodies, their models and states, the colliders, and the motions that
+// drive them from outside; it applies a replay's changes, makes the steps, and is saved and restored. Films, redrawn
+// films, stored states, benchmarks, estimates of cost and other programs all move a scene here, so that they agree to
+// the last bit.
 //
 //   World world(Script::load(...), assemble(...));
 //   world.start(solvers, &threads);
@@ -10,7 +11,7 @@
 //   }
 //
 // In each substep, bodies that may touch each other make their step together (islands.h); each of the others makes its
-// own step, in the order of the scene.
+// own step, several at the same time where that is faster.
 //
 // Not here: what is recorded of a world, and what is drawn of it (film/).
 #pragma once
@@ -33,7 +34,7 @@ namespace supple {
 struct StepWatch {
   std::function<void(std::size_t body, int substep)> prepared;  // the inputs are known, the step is not made
   std::function<void(std::size_t body, int substep)> made;      // the step was made, or has failed
-  std::function<bool()> stops = {};  // asked before each substep but the first; true: the frame is left unfinished
+  std::function<bool()> stops = {};  // asked before each substep but a call's first; true: the frame is left unfinished
 };
 
 class World {
@@ -60,15 +61,15 @@ class World {
   // outlive the world.
   void start(const Solvers& solvers, Threads* threads);
 
-  // Begins a frame: applies the changes of all frames since the one that was entered last, this one included, and
+  // Begins a frame: applies the changes of this frame and of all between it and the one that was entered last, and
   // returns them. In a scene without changes, an earlier frame can be entered too.
   std::vector<TimedChange> enter(int frame);
   // Goes back to the scene before its first frame. The states stay.
   void rewind();
 
   // Makes all steps of the frame that was entered, or those that are left of one that the watch stopped. Returns false
-  // as soon as a step has failed, and the report of that step says why, and when the watch stops it. The states are
-  // then in the middle of the frame.
+  // as soon as a step has failed, whose report then says why, or when the watch stops the frame. The states are then in
+  // the middle of the frame.
   bool step(const StepWatch& watch = {});
   // Enters a frame and makes its steps.
   bool play(int frame, const StepWatch& watch = {}) {
@@ -77,8 +78,8 @@ class World {
   }
   // Returns the number of frames that were entered, the present one among them.
   int frames() const;
-  // Tells whether the bodies are where a step has left them, so that its report and its contacts are those of the
-  // present state: not before the first step, nor after restore().
+  // Tells whether a step has led to the present state, so that reports and contacts are those of this state: false
+  // before the first step and after restore().
   bool has_stepped() const;
   // Tells whether the steps of the frame that was entered last were begun and not finished, because the watch stopped
   // them or one failed.
@@ -100,14 +101,14 @@ class World {
   // no result.
   void prepare(int substep);
 
-  // Returns how bodies touched each other at the end of the step that was made last, ordered by body.
+  // Returns how bodies touched each other and themselves at the end of the step that was made last, ordered by body.
   const std::vector<BodyTouch>& touches() const;
-  // Returns the last step that bodies made together. Where MovingBody::is_in_island() holds for a body whose step was
-  // just made, it is the step of that body.
+  // Returns the step of a joined model (islands.h) that was made last. Where MovingBody::is_in_island() holds for a
+  // body whose step was just made, it is the step of that body.
   const JoinedStep& joined_step() const;
 
-  // Returns how much shorter the steps of the last frame took than the sum of their times, because bodies made them at
-  // the same time [ms].
+  // Returns how much time the steps of the last frame saved, against the sum of their own times, because bodies made
+  // them at the same time [ms].
   double saved_ms() const;
 
   std::size_t size() const;  // number of bodies
@@ -120,7 +121,8 @@ class World {
   WorldState state() const;
   // Returns to a state of this film, earlier or later: also to the scene at that time.
   void restore(const WorldState& state);
-  // Returns the hash of a single body's state, or the XXH64 of all bodies' hashes in the order of the scene.
+  // Returns the hash of the state: of a single body, its state_hash(); of several, the XXH64 of their hashes in the
+  // order of the scene.
   std::uint64_t hash() const;
 
  private:

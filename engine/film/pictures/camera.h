@@ -15,8 +15,8 @@ struct SceneDef;
 // the ground below those bodies that will fall on it.
 Bounds framed_box(const SceneDef& scene, const Stage& stage);
 
-// Tells whether the scene says how far the eye is from what it sees, so that other shapes of the picture show more or
-// less of that.
+// Tells whether the scene sets the distance from the eye to what it sees, so that a picture of another shape shows more
+// or less of the scene.
 bool is_at_fixed_distance(const CameraDef& camera);
 
 // Tells whether a scene asks for a camera that knows the bodies' whole motion: to frame it, or to keep it in a picture

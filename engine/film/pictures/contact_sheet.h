@@ -12,9 +12,9 @@ namespace supple {
 
 struct SheetPicture {
   std::filesystem::path file;           // a PNG; empty: a grey field that says `missing`
-  std::string missing = {};             // "failed"
+  std::string missing = {};             // such as "failed"
   std::vector<std::string> words = {};  // of the caption, "name = value", joined where they fit on one line
-  std::string mark = {};                // soft, at the right of the caption's first line
+  std::string mark = {};                // in grey, at the right of the caption's first line
 };
 
 struct Sheet {

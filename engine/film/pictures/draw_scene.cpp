@@ -18,8 +18,8 @@ namespace {
 
 constexpr double collider_gloss = 0.35;
 
-// Where a part of a skin lies outside all elements, its edges are drawn together when they are stretched more than this
-// many times the largest stretch of the elements (at least 1).
+// Where a part of a skin lies outside all elements, its edges are shortened when they are stretched more than this many
+// times the largest stretch of the elements (at least 1).
 constexpr double most_skin_stretch = 1.4;
 
 Vec3 collider_color(const ColliderDef& def) {
@@ -46,8 +46,8 @@ Positions at_pose(const Positions& points, const Eigen::Isometry3d& pose) {
 }
 
 // Returns the distance from a point straight down to a collider at the start of the film; nothing where the collider
-// does not lie between the point and the drawn ground. The field's values are steps that lead through no surface
-// (sphere tracing, Hart 1996). near: how close to the surface counts as on it [m].
+// does not lie between the point and the drawn ground. The values of the distance field are steps that lead through no
+// surface (sphere tracing, Hart 1996). near: how close to the surface counts as on it [m].
 std::optional<double> way_down(const Vec3& from, const SceneCollider& collider, double near) {
   const Eigen::Isometry3d to_local = collider.pose(0).inverse();
   const double certainty = collider.def.shape.certainty();
@@ -195,7 +195,8 @@ double pixel_on(const Bounds& body, const std::vector<Camera>& cameras, int heig
   return pixel;
 }
 
-// Edges of up to six pixels, and those that are off by less than half a pixel, look round in enlarged pictures.
+// Returns how round a skin has to be to look round in enlarged pictures: edges are up to six pixels long, or off by
+// less than half a pixel.
 Roundness roundness_for(double pixel) { return {6 * pixel, 0.5 * pixel}; }
 
 void round_body(DrawnBody& drawn, const Body& body, double pixel) {

@@ -1,4 +1,5 @@
-// Makes what the renderer draws from bodies, colliders and their states.
+// Makes the stage and the positions that the renderer needs (render/draw_list.h) out of bodies, colliders and their
+// states. Nothing is drawn here.
 #pragma once
 
 #include <optional>
@@ -41,18 +42,19 @@ void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodi
 // which bodies touch.
 void round_for_cameras(Skin& skin, const SceneCollider& collider, const std::vector<Camera>& cameras, int height);
 
-// Returns how many times more the most stretched edge of a drawn skin is stretched than the elements that carry it;
-// nothing where no edge is stretched by half or the skin is the mesh's own boundary. skin: skin_positions of `now`, the
-// positions of the mesh [m].
+// Returns the largest stretch of an edge of a drawn skin over the largest stretch of the elements (at least 1); nothing
+// where no edge is stretched by half, or the skin is the mesh's own boundary. skin: what skin_positions() returns for
+// `now`, the positions of the mesh [m].
 std::optional<double> skin_excess(const DrawnBody& drawn, const std::vector<float>& skin, const TetMesh& mesh,
                                   const Positions& now);
 
-// Prepares skins, which are as they will be drawn, for the limit of their stretch (geometry/skins/skin_limit.h).
+// Prepares skins for the limit of their stretch (geometry/skins/skin_limit.h). They must already be as they will be
+// drawn.
 void limit_stretch(std::vector<DrawnBody>& drawn);
 
-// Returns the places of the skin's vertices, n x 3 [m]; after limit_stretch(), with edges that are drawn together where
-// they are stretched much more than the elements. now: the positions of the mesh [m], in the order of the input
-// file. threads: null where the calling thread does it all.
+// Returns the places of the skin's vertices, n x 3 [m]; after limit_stretch(), edges that are stretched much more than
+// the elements are shortened. now: the positions of the mesh [m], in the order of the input file. threads: null where
+// the calling thread does it all.
 Positions skin_places(const DrawnBody& drawn, const TetMesh& mesh, const Positions& now, Threads* threads = nullptr);
 // Returns the same as x y z by skin vertex.
 std::vector<float> skin_positions(const DrawnBody& drawn, const TetMesh& mesh, const Positions& now,

@@ -182,7 +182,8 @@ std::vector<std::vector<float>> DrawnFilm::positions(const SceneDef& scene, cons
   return std::move(list.positions);
 }
 
-// Returns what the scene's shutter and lens expose a picture to; nothing where they are for an instant and a point.
+// Returns what the scene's shutter and lens expose a picture to; nothing where the shutter opens for an instant alone
+// and the lens is a point.
 std::optional<Exposure> DrawnFilm::exposure(const SceneDef& scene, const FramePose& pose, const CollisionSet& set,
                                             const DrawList& list, Threads& threads) {
   const CameraDef& camera = scene.camera;

@@ -44,7 +44,7 @@ class DrawnFilm {
 
   // Tells whether a pose must have the positions of the frame before.
   bool needs_before() const { return opens_ || (field_ && field_->needs_before()); }
-  // Tells whether a pose must have the forces of colliders.
+  // Tells whether a pose must have the forces of contact.
   bool needs_forces() const { return field_ && field_->needs_forces(); }
   // Widens the range of the field to a frame of the film. The colours are those of the whole film once all frames have
   // been included and settle_field() has been called, which must happen before the stage is used.
@@ -73,7 +73,7 @@ class DrawnFilm {
   void follow_colors(const SceneDef& scene, DrawList& list);
 
   const std::vector<Body>& bodies_;
-  SceneDef start_;               // of the film
+  SceneDef start_;               // the scene at the start of the film
   std::vector<Camera> cameras_;  // over the film, to which skins are fitted
   std::vector<DrawnBody> drawn_;
   std::vector<Skin> collider_skins_;

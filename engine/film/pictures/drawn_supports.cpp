@@ -41,7 +41,7 @@ void DrawnSupports::add_to(DrawList& list, const SceneDef& scene, const FramePos
     const std::vector<HandleDef>& handles = scene.bodies[b].handles;
     const std::vector<Handle>& now = bodies_[b].description.handles;
     for (const auto& [one, held] : supports_[b]) {
-      // A handle that was grabbed while the film runs is no more where the film went back.
+      // A handle that was added while the film runs is gone after the film went back to before it.
       const bool is_there = one.handle < handles.size() && now[one.handle].vertices == held;
       const Eigen::Isometry3d motion = is_there ? motion_of_held(bodies_[b], one.handle, *pose.motion[b])
                                                 : Eigen::Isometry3d(Eigen::Isometry3d::Identity());

@@ -10,8 +10,9 @@
 
 namespace supple {
 
-// Returns how deep each vertex lies in the layer around the colliders, the deepest of all of them; negative for
-// vertices outside, where only values above -reach are exact [m]. Without colliders all are -reach.
+// Returns how deep each vertex lies in colliders and the layers around them, by the collider in which it is deepest
+// [m]. Depths of vertices outside are negative, and only exact above -reach; they are -reach where no collider is as
+// near.
 std::vector<double> depths_in(const Positions& x, const CollisionSet& set, double time, double reach, Threads* threads);
 
 // Appends x y z [m] and 0 for each vertex that a handle holds at the time [s], 1 for each that lies within a thousandth

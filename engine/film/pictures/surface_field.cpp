@@ -55,8 +55,8 @@ std::optional<ElementQuantity> element_quantity(FieldQuantity quantity) {
 }
 
 bool body_has(FieldQuantity quantity, const Body& body) {
-  // Springs have neither stress nor a volume over which energy could be spread. What has flowed has neither, and
-  // positions do not tell what that is.
+  // Cloth has neither stress nor energy by volume. Those of a body that flows depend on what has flowed, which
+  // positions do not tell.
   return !(body.def.cloth || body.def.flows()) ||
          (quantity != FieldQuantity::energy && quantity != FieldQuantity::stress);
 }

@@ -1,6 +1,7 @@
 // Computes the field that surfaces show in colours: which value each vertex of a body has, and what range the colours
-// span. Everything follows from positions and from the scene, so that a film has the same colours when it is drawn
-// again. Not here: the formulas of elements (sim/measures/pose_elements.h), and how colours are drawn (render/).
+// span. Everything follows from the scene and from the positions and forces that a run keeps, so that a film has the
+// same colours when it is drawn again. Not here: the formulas of elements (sim/measures/pose_elements.h), and how
+// colours are drawn (render/).
 #pragma once
 
 #include <optional>
@@ -29,8 +30,8 @@ struct FramePose {
   // These lists have one entry for each body, by vertex of its mesh [m]. `before` is of the frame before; it is empty
   // where neither the field nor the shutter needs it.
   std::vector<const Positions*> motion, before;
-  // The forces of colliders at the end of the frame: for each body, by vertex of its mesh [N]. Empty where the field
-  // does not need them or where there are no colliders.
+  // The forces of contact at the end of the frame: for each body, by vertex of its mesh [N]. Empty where the field does
+  // not need them; without rows where the scene has nothing to touch.
   std::vector<const Positions*> forces = {};
   const FrameRow* row = nullptr;             // row of the frame in the run's profile; null where it is not known
   std::span<const GraphPoint> earlier = {};  // points of all earlier frames; empty where the pictures have no graphs
@@ -53,7 +54,8 @@ class SurfaceField {
   std::vector<std::vector<double>> values(const FramePose& pose, const CollisionSet& set, Threads* threads);
 
   // Widens the range of the whole film for the values of one frame: only a hundredth of the vertices may lie above it
-  // (for contact forces, a hundredth of the vertices with a force). The range begins at the value at rest.
+  // (for contact forces, a hundredth of the vertices with a force). The range begins at the value at rest, or has it in
+  // the middle.
   void include(const std::vector<std::vector<double>>& values);
   // Ends the search for the range of the whole film: rounds it to a number that reads well.
   void settle();

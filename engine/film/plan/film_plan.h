@@ -45,7 +45,7 @@ struct FilmPlan {
   bool film_only = false;  // no files of the frames and no checkpoints; only with a video
   FilmCoding coding;       // of the video
   bool stills = false;     // a poster and a sheet of pictures, where there are files of the frames
-  double rough = 0;        // share of their vertices that a solid keeps in the first pass of a film (film/rough_pass.h)
+  double rough = 0;        // share of its vertices that a solid keeps in a rough pass (film/rough_pass.h); 0: no pass
   bool preview = false;    // a quarter of the size, every other frame, coarse meshes (film/plan/preview.h)
   GlChoice gl = GlChoice::automatic;
   int error_every = 0;           // measure the error of equation 12 every so many frames; 0: never
@@ -57,7 +57,7 @@ struct FilmPlan {
   std::string verify;               // file of recorded states to compare with; empty: none
   std::optional<double> tolerance;  // for `verify`, over a body's size; nothing: the bits must be the same
 
-  std::string repeat;  // folder of a run after whose numbers of iterations steps end; empty: budgets decide
+  std::string repeat;  // folder of a run whose cuts are repeated (film/record/repeated_cuts.h); empty: budgets decide
 
   bool cache = true;   // meshes and skins are kept under the user's cache folder (base/user_cache.h)
   bool quiet = false;  // no progress and no remarks

@@ -19,7 +19,7 @@ struct MeasuredErrors {
   // The error of equation 12; nothing where the start's objective is above its minimum by round-off alone.
   std::optional<double> error;
   double motion = 0;      // the error of motion (sim/model/motion_error.h)
-  bool converged = true;  // false: the reference may be above the minimum, and the errors are larger than these
+  bool converged = true;  // false: the reference may be above the minimum, and the true errors larger than these
 };
 
 // Measures the errors of the steps that one body makes by itself, against the converged solution.

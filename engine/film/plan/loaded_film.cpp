@@ -66,7 +66,7 @@ SceneSource source_of(const FilmPlan& plan) {
 namespace {
 
 // Returns the setting for the clock of a film that goes on from a run; empty where the frame's number tells it. A run
-// that is gone is left to those who need more of it.
+// that is gone is refused by those who need more of it.
 std::string clock_setting(const SceneDef& scene) {
   if (!scene.from || scene.from->clock || !is_run(scene.from->run)) return "";
   const double time = time_in_run(read_run(scene.from->run), scene.from->frame);

@@ -22,13 +22,13 @@ struct LoadedFilm {
 // Returns the scene of a plan as the reader takes it.
 SceneSource source_of(const FilmPlan& plan);
 
-// Reads the scene or replay of a film. settings: those of --set; they get one more where the film goes on from a run
-// whose clock is not that of its frames' numbers: from one that went on itself, or that has another rate. Throws
+// Reads the scene or replay of a film. settings: those of --set. The clock is added to them where the film goes on from
+// a frame whose number does not tell the time: from a run that went on itself, or that has another rate. Throws
 // InputError.
 Script load_script(const SceneSource& source, std::vector<std::string>& settings,
                    std::optional<std::size_t> sweep_point = {});
 
-// Returns the setting for --size, beside settings that may not say the size as well. Throws InputError.
+// Returns the setting for --size. settings: those of --set, which must not say the size as well. Throws InputError.
 std::string size_setting(const std::string& size, const std::vector<std::string>& settings);
 
 // Reads the scene and its meshes. command: the command line with which the program was called. Throws InputError.

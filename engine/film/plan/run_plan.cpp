@@ -74,7 +74,7 @@ FilmPlan plan_of_run(const RunRecord& run, const std::filesystem::path& scene,
                      "the run's scene is no longer there; supple draw takes it from elsewhere, with --scene FILE");
   }
   for (const Json& setting : info["settings"]) film.settings.push_back(setting.get<std::string>());
-  // Width and height that are asked for now stand over the size by name that the run was given.
+  // A width or height in `settings` takes the place of the size by name that the run was given.
   const bool sized = std::ranges::any_of(settings, [](const std::string& setting) {
     return setting.starts_with("output.width=") || setting.starts_with("output.height=");
   });

@@ -16,8 +16,8 @@ FilmPlan plan_of_run(const RunRecord& run, const std::filesystem::path& scene,
 // starts.
 double time_in_run(const RunRecord& run, int frame);
 
-// Refuses a film that would move in another way than the run did: one with other values than those of what is seen,
-// other changes, or other meshes. Throws InputError with all differences.
+// Refuses a film that would move in another way than the run did: one whose values differ in more than what is seen, or
+// that has other changes or other meshes. Throws InputError with all differences.
 void check_same_motion(const RunRecord& run, const LoadedFilm& film);
 
 }  // namespace supple

@@ -44,7 +44,7 @@ std::vector<std::string> shipped_names(const std::string& kind) {
 
 namespace {
 
-// Names the installed families whose names begin as the word does, or the one that is nearest to it.
+// Names the installed families whose names begin with the word, or the one that is nearest to it.
 std::string similar_families(const std::string& word) {
   const std::vector<std::string> all = font_families();
   std::vector<std::string> begin_so;

@@ -46,14 +46,15 @@ class BodyRecorder {
   // Says why the last step failed; empty where it did not.
   std::string failure() const;
 
-  // Notes the frame's positions, and the forces of colliders where there are any, and appends them to motion/.
+  // Notes the frame's positions, and the forces of contact where the scene has anything to touch, and appends them to
+  // motion/.
   void save_motion();
   // Notes the present positions and forces, as save_motion() does, and appends nothing.
   void note_motion();
   // Returns the frame's positions as motion/ holds them, in the order of the input file [m].
   const Positions& saved_motion() const { return saved_motion_; }
-  // Returns the forces of colliders on the vertices as motion/ holds them, in the order of the input file [N]; without
-  // rows where there are no colliders.
+  // Returns the forces of contact on the vertices as motion/ holds them, in the order of the input file [N]; without
+  // rows where the scene has one body and no collider.
   const Positions& saved_forces() const { return saved_forces_; }
   // Returns the present positions as motion/ would hold them.
   Positions present_motion() const;
@@ -90,7 +91,7 @@ class BodyRecorder {
   std::optional<PointCacheWriter> motion_;  // these two where files are written
   std::optional<ForceFileWriter> forces_;   // where there is anything to touch
   Vec3 origin_;                             // of the files of motion [m]
-  Positions saved_motion_;                  // in the world
+  Positions saved_motion_;                  // the frame's positions in the world [m]
   Positions saved_forces_;                  // [N]
   std::optional<FieldWriter> fields_;       // made when fields are first asked for
 };

@@ -45,8 +45,8 @@ bool has_just_begun(const std::filesystem::path& run) {
   return json.is_object() && !json.contains("ended");
 }
 
-// A film without a checkpoint would be made again from the start. That is refused where the folder holds more than the
-// beginning of this same film.
+// Refuses a folder without a checkpoint that holds more than the beginning of this same film: the film would be made
+// again from its start.
 void check_nothing_is_lost(const std::filesystem::path& run, const RunInfo& info) {
   const std::filesystem::path file = run / "run.json";
   if (!std::ifstream(file)) return;

@@ -15,8 +15,8 @@ namespace supple {
 
 struct SceneDef;
 
-// Returns the checkpoint from which a film is resumed, if there is one yet, and prints a note about it. A complete film
-// without a checkpoint and a film of another scene or program do not count as a beginning of this one.
+// Returns the checkpoint from which a film is resumed, if there is one yet, and prints a note about it. Refuses a
+// complete film without a checkpoint, and a film of another scene or program.
 std::optional<WorldState> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames,
                                         const RunInfo& info);
 

@@ -22,9 +22,9 @@ NotedRows noted_rows(const std::filesystem::path& file, int frames);
 
 class FilmLog {
  public:
-  // every: frames between checkpoints; 0: none, and the file of rows is then removed while it is still open, so that
-  // none is left behind. kept: frames of an earlier run, after which this one resumes the film. record: a file outside
-  // of the folder that checkpoints rest on too; empty: none.
+  // every: frames between checkpoints; 0: none, and the file of rows of a film that is not resumed is then removed
+  // while it is still open, so that none is left behind. kept: frames of an earlier run, after which this one resumes
+  // the film. record: a file outside of the folder that checkpoints rest on too; empty: none.
   FilmLog(const RunFolder& folder, int every, std::string identity, int kept, std::filesystem::path record);
 
   int frames() const { return whole_ + waiting_rows(); }

@@ -85,7 +85,7 @@ void PairRecorder::note_touches(FrameRow& row) {
   }
 }
 
-// Forgets the pairs that overlapped at the start and that the contacts of this frame show no longer deep. Contacts that
+// Forgets, of the pairs that overlapped at the start, those whose contacts are not deep in this frame. Contacts that
 // are not found show nothing, so positions are asked about these pairs again.
 void PairRecorder::note_who_came_apart(const FrameRow& row) {
   std::erase_if(coming_apart_, [&](const Overlap& overlap) {
@@ -96,7 +96,7 @@ void PairRecorder::note_who_came_apart(const FrameRow& row) {
   });
 }
 
-// A cloth can have come to cross itself only where it has touched itself.
+// Notes each cloth that has come to cross itself. This can only have happened where the cloth touched itself.
 void PairRecorder::find_crossed(FrameRow& row) {
   for (const BodyTouch& touch : world_.touches()) {
     if (touch.a != touch.b) continue;

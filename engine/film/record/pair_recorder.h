@@ -14,13 +14,13 @@
 
 namespace supple {
 
-// A depth is expected where one of both bodies says that overlaps are meant, and in bodies that overlap at the start of
-// the film, up to the first frame in which their contacts are no deeper than DeepBodies::deep. From that frame on,
-// positions have their say again, in case that contacts are not found at all.
+// A depth is expected (PairRow::expected) where one of both bodies says that overlaps are meant, and in bodies that
+// overlap at the start of the film, up to the first frame in which their contacts are no deeper than DeepBodies::deep.
+// From that frame on, depths of such bodies are also measured by positions, in case that contacts are not found at all.
 class PairRecorder {
  public:
-  // world: before its first frame; it must outlive this object. earlier: the rows of an earlier run whose film is
-  // resumed; what they tell is not told again.
+  // The world must outlive this object. earlier: the rows of the frames that are not made again; what they tell is not
+  // told again.
   PairRecorder(const World& world, const FrameRows& earlier);
 
   // Adds the pairs to the row of the frame whose steps were made last.

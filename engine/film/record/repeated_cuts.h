@@ -23,8 +23,8 @@ std::optional<BudgetCuts> cuts_at(const CutsByFrame& cuts, int frame, int subste
 std::vector<CutsByFrame> repeated_cuts(const std::filesystem::path& run, const std::vector<std::string>& bodies,
                                        int frames);
 
-// Returns the cuts of a live session by body; no body where there was no session. Throws InputError where it
-// names what a film cannot have.
+// Returns the cuts of a live session by body; empty where there was no session. Throws InputError where the session
+// names a step that it cannot have.
 std::vector<CutsByFrame> repeated_cuts(const PlayedSession& session, const std::vector<std::string>& bodies);
 
 }  // namespace supple

@@ -50,8 +50,8 @@ Json regions_json(const StepProblem& problem) {
   return regions;
 }
 
-// Writes those keys of [solver] that a StepProblem contains. The method and the settings of Chebyshev's method alone
-// are not among them; integrator and damping are written one level up.
+// Returns those settings of a StepProblem that scenes have in [solver], as far as files of states keep them
+// (docs/states.md). Integrator and damping are written one level up.
 Json solver_json(const StepProblem& problem) {
   const SolverSettings& s = problem.solver;
   const ContactSettings& c = s.contact;

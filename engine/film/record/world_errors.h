@@ -22,9 +22,9 @@ class WorldErrors {
   // Keeps the state of a body from which a step to be measured begins.
   void before_step(std::size_t body) { bodies_[body].before = world_.body(body).state(); }
 
-  // Returns the errors of a body's step, which was just made and has not failed. Of a step of several bodies, they are
-  // asked for in the order of the scene, all before the next step is made. Nothing where a step was made with another
-  // energy, which has another minimum (MovingBody::untangled).
+  // Returns the errors of a body's step, which was just made and has not failed; nothing where the step was made with
+  // another energy, which has another minimum (MovingBody::untangled). For a step of several bodies this must be called
+  // for each of them, in the order of the scene, before the next step is made.
   std::optional<MeasuredErrors> of_step(std::size_t body);
 
  private:

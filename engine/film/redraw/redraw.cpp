@@ -43,7 +43,7 @@ std::vector<PointCacheReader> motion_of(const RunRecord& run, const LoadedFilm& 
   return motion;
 }
 
-// Opens what the run kept of the colliders' forces, where the field shows them.
+// Opens what the run kept of the forces of contact, where the field shows them.
 std::vector<ForceFileReader> forces_of(const RunRecord& run, const LoadedFilm& film) {
   std::vector<ForceFileReader> forces;
   const SceneDef& scene = film.world.script().scene();
@@ -95,7 +95,7 @@ void check_smooth(const DrawPlan& plan, const SceneDef& scene) {
                                  other));
 }
 
-// A rate that is a whole number, or has few digits, stands as one in JSON.
+// Returns a rate as a number where it is whole or has few digits, otherwise as text.
 Json rate_json(const FrameRate& rate) {
   const std::string text = rate.text();
   return text.find('/') == text.npos ? Json(static_cast<double>(rate)) : Json(text);

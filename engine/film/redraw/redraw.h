@@ -24,7 +24,7 @@ struct DrawPlan {
   std::vector<std::string> settings;    // path=value, in place of the run's values; only of what is seen
   int first = 0, last = -1, every = 1;  // frames of the run; last < 0: the run's last frame
   int smooth = 1;                       // pictures for each of these frames; those between are interpolated
-  std::optional<FrameRate> rate;        // of the film; nothing: one frame of the run, or part of one, a picture
+  std::optional<FrameRate> rate;        // of the drawn film; nothing: the run's, over `every`
   GlChoice gl = GlChoice::automatic;
   bool legend_apart = false;  // pictures have no legend; the result holds it
   bool cache = true;          // of meshes and skins
@@ -35,8 +35,8 @@ struct DrawPlan {
 struct LoadedDrawing {
   LoadedFilm film;  // without models
   std::vector<PointCacheReader> motion;
-  std::vector<ForceFileReader> forces;  // forces of colliders on each body; empty where the drawing does not need them
-  std::vector<FrameRow> rows;           // of the run's profile; empty while it goes on
+  std::vector<ForceFileReader> forces;  // forces of contact on each body; empty where the drawing does not need them
+  std::vector<FrameRow> rows;           // of the run's profile; empty while the run goes on
   int frame_count = 0;                  // of the run
   std::vector<int> frames;              // of the run, that are drawn
   int smooth = 1;                       // pictures for each of them but the last
@@ -78,7 +78,8 @@ struct DrawResult {
   std::optional<FieldLook> legend = {};  // of the field, where there is one
 };
 
-// Returns the range of the drawing's field over the whole film. The scene must have a field.
+// Returns the range of the drawing's field, which the scene must have. It follows from the whole run where the scene
+// says so (FieldRange::film).
 Eigen::Vector2d field_range(LoadedDrawing& drawing);
 
 // Draws pictures into the folder's frames/, and hands them to `video` where there is one. Calls told(done) from time to

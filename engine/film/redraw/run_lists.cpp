@@ -75,8 +75,8 @@ Positions RunLists::motion_at(std::size_t body, const Moment& moment) {
   return between_frames(frames, moment.share);
 }
 
-// Returns the step from a picture to the next one; between the frames of the run it is as short as it is seen, so that
-// slow motion is blurred as by a camera that takes as many pictures [frames].
+// Returns how far the moment of `before_` is before that of a picture [frames of the run]: in slow motion the step from
+// one picture to the next, so that pictures are blurred as by a camera that takes as many of them; otherwise one frame.
 double RunLists::picture_step() const {
   const Moment first = moment_of(drawing_, 0), second = moment_of(drawing_, 1);
   return drawing_.smooth > 1 ? second.frame - first.frame + second.share - first.share : 1;

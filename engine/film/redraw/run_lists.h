@@ -35,7 +35,7 @@ class RunLists {
   DrawnFilm drawn_;
   Threads threads_;
   std::vector<Positions> motion_, before_;  // at the moment that was loaded, and a frame or a picture before it [m]
-  std::vector<Positions> forces_;           // of colliders, where they are needed [N]
+  std::vector<Positions> forces_;           // of contact, where they are needed [N]
   std::vector<GraphPoint> graphed_;         // points of all frames
 };
 

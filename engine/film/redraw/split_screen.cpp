@@ -43,7 +43,7 @@ Grid grid_of(const PngImage& first, int panels, int columns) {
   return grid;
 }
 
-// Makes a text smaller until it is no wider than its panel.
+// Returns the size, `em` or less, at which a text is no wider than its panel [pixels].
 int fitting_em(const Font& font, const std::string& text, int em, int width) {
   while (em > 7 && draw_caption(font, text, em).width > width) --em;
   return em;
