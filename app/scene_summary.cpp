@@ -21,7 +21,7 @@ constexpr int tried_frames = 5;
 std::string cost_text(const World& world, const FrameCost& cost, const Threads& threads) {
   if (!cost.failure.empty()) return cost.failure;
   if (cost.frame_ms.empty()) return "not known: another body's step fails in the first frame";
-  const bool free = !world.colliders().scene_colliders.empty() && !cost.touched;
+  const bool free = world.scene().may_touch() && !cost.touched;
   return fmt::format("{:.2f} ms a frame (median of the first {}, {} threads{})", distribution_of(cost.frame_ms).p50,
                      cost.frame_ms.size(), threads.count(),
                      free ? "; it touches nothing in them, and contacts cost more" : "");

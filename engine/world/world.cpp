@@ -25,7 +25,7 @@ struct World::Parts {
   int frame = -1;                                          // the frame that was entered last; -1: none
   int substep = 0;                                         // the next substep of that frame to be made
   bool has_failed = false;                                 // whether a step of that frame has failed
-  bool has_stepped = false;                                // whether a step was made since a state was last restored
+  bool has_stepped = false;                                // whether a step was made since it was started or restored
   double saved_ms = 0;                                     // what World::saved_ms() returns [ms]
 
   Parts(std::optional<Script> played, SceneDef at_start, std::vector<Body> assembled)
@@ -117,6 +117,7 @@ void World::start(const Solvers& solvers, Threads* threads) {
   Parts& parts = *parts_;
   build_models();
   parts.moving.clear();
+  parts.has_stepped = false;
   const bool was_played = parts.frame >= 0;
   if (was_played) rewind();
   for (std::size_t b = 0; b < size(); ++b) {

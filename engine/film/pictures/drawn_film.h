@@ -44,8 +44,6 @@ class DrawnFilm {
 
   // Tells whether a pose must have the positions of the frame before.
   bool needs_before() const { return opens_ || (field_ && field_->needs_before()); }
-  // Tells whether a pose must have the forces of contact.
-  bool needs_forces() const { return field_ && field_->needs_forces(); }
   // Widens the range of the field to a frame of the film. The colours are those of the whole film once all frames have
   // been included and settle_field() has been called, which must happen before the stage is used.
   void include_in_field(const FramePose& pose, const CollisionSet& set, Threads& threads);
