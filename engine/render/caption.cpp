@@ -64,7 +64,7 @@ class Faces {
 
   FT_Library freetype_ = nullptr;
   std::vector<Font> fonts_;
-  std::vector<FT_Face> faces_;  // as fonts_
+  std::vector<FT_Face> faces_;  // in the order of fonts_
 };
 
 // Holds a glyph and the pixel of its origin, counted from the left end of the line and from its base line down.
@@ -136,7 +136,8 @@ std::vector<FT_Face> faces_of(Faces& faces, const std::vector<char32_t>& points)
   return chosen;
 }
 
-// Shapes a line: its parts run in the directions of their scripts, in that of the first letter as a whole.
+// Shapes a line: each part of it runs in the direction of its script, and the line as a whole in that of its first
+// letter.
 GlyphLine shaped(const std::vector<char32_t>& points, const std::vector<FT_Face>& faces) {
   const std::unique_ptr<raqm_t, decltype(&raqm_destroy)> raqm(raqm_create(), &raqm_destroy);
   const std::vector<std::uint32_t> text(points.begin(), points.end());
@@ -159,7 +160,8 @@ GlyphLine shaped(const std::vector<char32_t>& points, const std::vector<FT_Face>
   return line;
 }
 
-// Returns by how much the glyphs must become smaller to stay within the lines of a face; 1 where they do.
+// Returns the factor by which glyphs of other faces must become smaller to stay within a line of the usual face; 1
+// where they do.
 double share_that_fits(const GlyphLine& line, FT_Face usual) {
   constexpr double smallest = 0.6;
   const double slack = 1 + usual->size->metrics.y_ppem / 25.0;  // else lines would differ because one has a deep comma

@@ -43,7 +43,7 @@ std::optional<PixelRect> place_of(const WantedCaption& caption, const CaptionRoo
 
 int picture_margin(int width, int height) { return std::max(2, height_for_letters(width, height) / 100); }
 
-// By the separating axis theorem: the axes are those of the rectangle and the normals of the outline's edges.
+// Applies the separating axis theorem: the axes are those of the rectangle and the normals of the outline's edges.
 bool overlaps(const PixelRect& rectangle, const Outline& outline) {
   if (outline.empty()) return false;
   const std::array<Eigen::Vector2d, 4> corners = {

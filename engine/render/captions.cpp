@@ -45,7 +45,8 @@ int Captions::width_of(const std::string& text, int em) const {
 }
 
 // Returns the pixel below which a body's caption stands; nothing behind the eye. The caption stands on the ground: for
-// a body that hangs in the air, below the place where it starts. z: of the part below which it stands [m].
+// a body that hangs in the air, below the place where it starts. z: the coordinate of the part of the body below which
+// it stands [m].
 std::optional<Eigen::Vector2d> Captions::foot_of(const Projection& project, const Body& body, double z) const {
   std::optional<Eigen::Vector2d> foot = project({body.rest.center().x(), std::min(body.rest.lower.y(), 0.0), z});
   if (!foot || !body.kept_clear) return foot;
@@ -157,8 +158,8 @@ bool Captions::find_places(const Camera& camera, const LetterSizes& sizes, std::
   bool done = false;
   for (const Demand& demand : demands) {
     if (done || (demand.boards && !have_boards)) continue;
-    // Where captions cannot all be near their bodies, letters grow as long as that moves each caption by less than a
-    // line.
+    // Where captions cannot all be near their bodies, letters grow as long as that moves captions by less than a line
+    // on average.
     std::optional<double> most;
     if (demand.reach == CaptionReach::anywhere && !demand.over_bodies) {
       most = try_size(camera, sizes.smallest, demand);
@@ -218,12 +219,13 @@ std::optional<Eigen::Vector2d> end_of(const Projection& project, const Bounds& b
 
 }  // namespace
 
-// Moves all captions as far as the lower ends of their bodies' boxes have moved in the picture. The caption of the body
-// that the camera follows stays with it, wherever it goes, and so hardly moves in the picture. Those of other bodies
-// stay at the places on the ground where the bodies were at the start, as they do before a camera that stands still: a
-// box reaches down to the ground, and its caption is below all of it, so that the body comes to lie above its caption.
-// Only the lower edge of the picture may hold the caption up, as far as it did in the layout. A caption of a body that
-// has left the picture goes with it; its place is then outside.
+// Moves each caption in the picture by as much as the lower end of its body's box has moved there since the layout. The
+// box of the body that the camera follows is taken where the body is in this frame, so that its caption hardly moves in
+// the picture. The boxes of other bodies are those at the start, extended down to the ground: their captions stay at
+// places on the ground, as they do before a camera that stands still. A caption below its body keeps at least the
+// distance gap_ from the box, except where the lower edge of the picture holds it up; there it may come as near to the
+// box as in the layout. A caption leaves the picture as its box does, and is put outside where part of the box lies
+// behind the eye.
 void Captions::go_along(const Camera& camera, const std::optional<Followed>& followed) {
   const Projection before(*first_camera_, around_, width_, height_), now(camera, around_, width_, height_);
   placed_ = laid_out_;

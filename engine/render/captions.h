@@ -1,11 +1,11 @@
 // Lays the captions of bodies over the finished picture: each below its body, and none over another or over a body that
 // stands where it stood at the start. The caption of a body on a collider of its own, called its board here, is read as
 // that of both and stands beside both: below them, or above them where the board leads the body down in the picture.
-// Where there is little room, all captions become smaller together; captions.cpp begins with how large they are. They
-// are laid out for the first picture. Where the camera moves, each caption goes along with its body in the picture
-// and does not jump, and that of a body which the camera follows stays where it is in the picture. Not here: the words
-// (a mesh's label is BodyDef::label, notes are from film/pictures/picture_words.h), and the search for free places
-// (caption_layout.h).
+// Where there is little room, all captions become smaller together; captions.cpp begins with their sizes. They are laid
+// out for the first picture. Where the camera moves, each caption goes along in the picture with the place where its
+// body starts, and does not jump; that of a body which the camera follows stays where it is in the picture. Not here:
+// the words (a mesh's label is BodyDef::label, notes are from film/pictures/picture_words.h), and the search for free
+// places (caption_layout.h).
 #pragma once
 
 #include <span>
@@ -21,7 +21,7 @@ namespace supple {
 class Captions {
  public:
   // There are no captions when the stage has no font. taken: places of other things that are laid over the picture.
-  // subtitles: the room of all subtitles, of which captions keep clear where they still stand close by their bodies.
+  // subtitles: the room of all subtitles; captions stay out of it if all of them then have places near their bodies.
   explicit Captions(const Stage& stage, std::vector<PixelRect> taken = {}, const PixelRect& subtitles = {});
 
   // Replaces the caption of a mesh.
@@ -36,7 +36,7 @@ class Captions {
   // free of other captions is left out; so is that of a body that the camera has left behind.
   const std::vector<Placed>& places(const Camera& camera, const std::optional<Followed>& followed = {});
 
-  // Tells whether a caption stands in front of a body where there is no other room; `placed` counts in places().
+  // Tells whether a caption stands in front of a body, because there was no other room. placed: its number in places().
   bool over_a_body(std::size_t placed) const { return over_body_[placed]; }
 
   // Draws the captions and, below each, the list's note on its mesh. Those that the picture's subtitle would cover are
@@ -84,12 +84,12 @@ class Captions {
   std::vector<PixelRect> taken_;
   PixelRect subtitles_;
   std::vector<Body> bodies_;               // by mesh of the stage
-  std::vector<Placed> placed_, laid_out_;  // in the picture in hand; in that of the camera of the layout
+  std::vector<Placed> placed_, laid_out_;  // places in the picture in hand, and in that of the layout's camera
   std::optional<Camera> first_camera_;     // the camera of the layout where the camera moves; nothing where it does not
   std::vector<bool> over_body_;            // in the order of placed_: whether the caption stands in front of a body
   std::vector<Sticker> stickers_;          // of the labels, in the order of placed_
   int em_ = 0;                             // the height of the letters that was chosen [pixels]
-  std::optional<Camera> camera_;           // the camera for which captions were laid out; nothing: they must be again
+  std::optional<Camera> camera_;           // the camera of the layout; nothing where captions must be laid out
 };
 
 }  // namespace supple

@@ -31,8 +31,8 @@ double srgb_of(double linear) {
   return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
 }
 
-// Viridis (van der Walt and Smith 2015) by a polynomial of degree six in each channel (Zucker 2019, "Matplotlib
-// colormaps", a least-squares fit that stays within 0.01 of the table).
+// Computes viridis (van der Walt and Smith 2015) by a polynomial of degree six in each channel (Zucker 2019,
+// "Matplotlib colormaps", a least-squares fit that stays within 0.01 of the table).
 Vec3 viridis(double t) {
   static const std::array<Vec3, 7> c = {Vec3(0.2777273272234177, 0.005407344544966578, 0.3340998053353061),
                                         Vec3(0.1050930431085774, 1.404613529898575, 1.384590162594685),
@@ -46,7 +46,7 @@ Vec3 viridis(double t) {
   return sum.cwiseMax(0).cwiseMin(1);
 }
 
-// The place on a straight line through OKLab from one colour to another.
+// Returns the sRGB colour at the share t of a straight line in OKLab. from, to: its ends in OKLab.
 Vec3 mixed(const Vec3& from, const Vec3& to, double t) { return srgb_of_oklab((1 - t) * from + t * to); }
 
 Vec3 hue(double lightness, double chroma, double degrees) {

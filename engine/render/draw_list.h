@@ -37,7 +37,7 @@ struct FieldLook {
 struct GraphLook {
   std::string title;                                  // with the unit
   std::vector<std::pair<double, std::string>> ticks;  // place from 0 (bottom) to 1 (top), and the value there
-  int frames = 1;                                     // of the whole film, over which the graph is as wide as it is
+  int frames = 1;                                     // of the whole film; the width of the graph stands for them all
 };
 
 // Describes how far a graph's curve has come.
@@ -53,31 +53,32 @@ constexpr float no_field = -1;
 // handles is called a support: scene/building/support.h.)
 struct Board {
   std::size_t mesh;  // of the collider
-  Vec3 downhill;     // where its surface under the body falls; as long as the sine of its angle, zero where it is level
+  // The direction in which its surface falls under the body, as long as the sine of the angle; zero where it is level.
+  Vec3 downhill;
 };
 
 // Describes what only cloth has.
 struct ClothLook {
   std::optional<Vec3> back;  // colour of its back; a darker and paler tone of the front's where there is none [sRGB]
-  double yarn = 0;           // from one yarn to the next; 0: none are seen [m]
+  double yarn = 0;           // distance from one yarn to the next; 0: none are seen [m]
   double hem = 0;            // width of the hem along open borders; 0: there is none [m]
   bool operator==(const ClothLook&) const = default;
 };
 
 // Describes a surface whose vertices move while its other attributes stay.
 struct DrawMesh {
-  std::string name;                             // of its mask; it is in none when empty
+  std::string name;                             // name of its mask; when empty, it is in no mask
   std::string label;                            // caption; none when empty
   std::vector<std::uint32_t> triangles;         // vertex indices, three a triangle, anticlockwise from outside
-  std::vector<std::uint32_t> shadow_triangles;  // the same, those that cast its shadow; all of them when empty
+  std::vector<std::uint32_t> shadow_triangles;  // the triangles that cast its shadow; when empty, `triangles` do
   std::vector<float> occlusion;                 // by vertex, from 1 (open sky) to 0 (no sky)
   std::vector<std::array<float, 8>> paint;      // by vertex: signed distance to each layer, negative where it covers
   std::vector<std::array<float, 2>> square;  // by vertex: place in a printed pattern, in squares; no pattern when empty
   Printed printed = Printed::grid;
   std::vector<SurfaceColor> surface_colors;  // by vertex, in place of `color`; empty where that is the colour
-  std::vector<std::uint32_t> smooth;         // by vertex, beside those: vertices with the same number have one normal
+  std::vector<std::uint32_t> smooth;         // by vertex: those of one number have one normal; empty: each its own
   std::shared_ptr<const std::vector<Texture>> textures;  // of the surface's colours; null: none
-  std::vector<std::array<float, 3>> flat;  // by vertex, of cloth: place on the flat cloth, and from its open border [m]
+  std::vector<std::array<float, 3>> flat;  // by vertex of cloth: x y when flat, and distance from an open border [m]
   std::optional<ClothLook> cloth;          // nothing: it is no cloth
   bool two_sided = false;                  // for cloth, and for bodies that may be inside out
   Vec3 color;                              // sRGB colour of the uncovered surface
@@ -115,8 +116,8 @@ struct StageColors {
 struct Camera {
   Vec3 eye = Vec3(0, 0, 3), target = Vec3::Zero();  // [m]
   double fov_deg = 30;                              // vertical field of view
-  // How far the picture is moved on its plane, to the right and up, as tangents of angles: what a lens's border sees is
-  // moved so that the plane in focus stays where it is.
+  // How far the picture is moved on its plane, to the right and up, as tangents of angles. A picture from a place on
+  // the lens beside its middle is moved so that what is in focus stays where it is.
   Eigen::Vector2d shift = Eigen::Vector2d::Zero();
 };
 
@@ -132,12 +133,12 @@ struct Stage {
   LightRig light = studio_light();
   Font font;                           // of all words; no captions when empty
   std::optional<FieldLook> field;      // that meshes show
-  double kept_free = 0;                // of the width at each side, where framing cameras show no body: for the legend
+  double kept_free = 0;                // share of the width that framing cameras keep free at each side, for the legend
   std::string note_template;           // a note as long as any below a caption; there are none when empty
   std::string headline_template;       // a line as long as any at the top of the picture; there is none when empty
   std::vector<std::string> subtitles;  // all that stand at the lower edge in some picture
   std::vector<GraphLook> graphs;
-  Camera first_camera;        // at the start of the film; graphs keep clear of what it shows
+  Camera first_camera;        // the camera at the start of the film, for whose picture places of graphs are chosen
   bool camera_moves = false;  // over the film
 };
 

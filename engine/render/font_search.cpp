@@ -106,7 +106,8 @@ std::vector<std::string> font_families() {
   return names;
 }
 
-// A search compares all installed fonts, which takes milliseconds, and the width of a text is asked for many times.
+// Remembers what it has found: a search compares all installed fonts, which takes milliseconds, and the width of a text
+// is asked for many times.
 std::optional<Font> font_with(char32_t character) {
   thread_local std::map<char32_t, std::optional<Font>> found;
   const auto [entry, is_new] = found.try_emplace(character);

@@ -147,7 +147,8 @@ void Ground::mark_occlusion(const Eigen::Matrix4f& view, const std::vector<float
   open_tiles_.mark(corners, triangles, view);
 }
 
-// Copies the bare ground into the picture, which is drawn when something of it has changed, or empties the picture.
+// Copies the bare ground into the picture, after drawing it again where something about it has changed. Empties the
+// picture where only shadows are shown.
 void Ground::begin_picture(GLuint picture, const Eigen::Matrix4f& view, const StageLight& light) {
   if (shown_ == GroundShown::shadows) {
     gl_.BindFramebuffer(GL_FRAMEBUFFER, picture);

@@ -33,7 +33,7 @@ void GroundOcclusion::cover(float x, float y, float z, float area) {
   }
 }
 
-// Does so for a triangle, in pieces of less than a cell. Of closed bodies only what looks down counts.
+// Records a triangle in pieces of less than a cell. Of closed bodies only the triangles that look down count.
 void GroundOcclusion::cover_by_triangle(const float* a, const float* b, const float* c, bool two_sided) {
   const auto high = static_cast<float>(reach_);
   if (a[1] > high && b[1] > high && c[1] > high) return;
@@ -77,8 +77,8 @@ const std::vector<float>& GroundOcclusion::compute(const std::vector<DrawMesh>& 
                         meshes[m].two_sided);
   }
   // A patch at height y, seen from a point at distance d beside it, covers this share of the sky: y^2 dA / (pi (d^2 +
-  // y^2)^2). At the least height, a cell that is covered whole hides all of it from the ground below. All shares are
-  // taken larger than they are: a studio's sky is darker near the horizon, and a body should be seen to stand.
+  // y^2)^2). At the least height, a cell that is covered whole hides the whole sky from the ground below. All shares
+  // are taken larger than they are: a studio's sky is darker near the horizon, and a body should be seen to stand.
   constexpr float stronger = 1.3f;
   std::fill(open_.begin(), open_.end(), 1.0f);
   const int radius = std::max(1, static_cast<int>(reach_ / cell));

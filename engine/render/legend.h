@@ -19,7 +19,7 @@ double legend_room(const Stage& stage);
 // Makes the line that stands in the upper left corner. Its letters are so small that the stage's longest line has room.
 Sticker headline_of(const Stage& stage, const std::string& text);
 
-// Returns how far that line and graphs stay away from the picture's edges [pixels].
+// Returns how far the headline and the graphs stay away from the picture's edges [pixels].
 int overlay_margin(const Stage& stage);
 
 // Returns the colour of letters on the stage's background: dark ones, or light ones where that is dark [sRGB].

@@ -16,9 +16,9 @@ struct OverlayPlaces {
   std::vector<PixelRect> all() const;
 };
 
-// A legend stands at the right edge, in the middle of the height. Graphs stand side by side in the corner where they
-// overlap neither the line nor the legend, leave the captions where they would be, and cover least of the bodies' boxes
-// at the start of the film.
+// Returns the places for a stage. A legend stands at the right edge, in the middle of the height. Graphs stand side by
+// side in a corner where they overlap neither the line, the legend nor the subtitles: of such corners, the one where
+// they cover the fewest captions, and then least of the bodies' boxes at the start of the film.
 OverlayPlaces overlay_places(const Stage& stage);
 
 }  // namespace supple

@@ -101,7 +101,7 @@ class PassMaker {
     if (pass == PicturePass::normals) compute_all_normals();
   }
 
-  // Meshes of one name share a mask.
+  // Adds the masks. Meshes of one name share a mask.
   void add_masks(std::size_t pixels) {
     for (const DrawMesh& mesh : source_.meshes) {
       const auto same = std::ranges::find_if(images_, [&mesh](const PassImage& image) {

@@ -19,7 +19,7 @@ constexpr float no_depth = 1e10F;
 
 struct PassImage {
   PicturePass pass;
-  std::string mesh;           // whose mask it is; empty for other passes
+  std::string mesh;           // the name of the mesh whose mask it is; empty for other passes
   int channels = 1;           // 1, or 3
   std::vector<float> values;  // rows from the top
 };

@@ -140,8 +140,8 @@ void Renderer::make_shading_program() {
   shading_program_ = std::make_unique<Program>(gl_, shaders_, "tiles", "surface", definitions);
 }
 
-// Light from behind needs to know how far its way through a body is. Once made the map stays, so that a film in which a
-// value comes and goes does not compile its shader again and again.
+// Makes the shadow map of the rim light once something is translucent: it tells how far this light goes through a body.
+// The map then stays, so that a film in which translucency comes and goes does not compile its shader again and again.
 void Renderer::make_rim_shadows() {
   if (rim_shadows_ ||
       std::ranges::none_of(stage_.meshes, [](const DrawMesh& mesh) { return mesh.finish.translucent > 0; }))

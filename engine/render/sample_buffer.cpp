@@ -30,11 +30,11 @@ struct RegisterOf<std::int64_t> {
   using Type = std::int64_t __attribute__((vector_size(64)));
 };
 
-// An edge of a triangle: its function is negative outside, and changes by these amounts with x and y. Coordinates are
-// in parts of a pixel.
+// Describes an edge of a triangle by a linear function of x and y that is negative outside. Coordinates are in parts of
+// a pixel.
 template <class Integer>
 struct Edge {
-  Integer by_x, by_y, value;  // the last at a place that the caller names
+  Integer by_x, by_y, value;  // changes of the function with x and y; its value at a place that the caller names
 
   // A sample on an edge belongs to the triangle on one side of it: of the two directions of an edge, one is moved by
   // the least step outwards.
@@ -135,8 +135,8 @@ SampleBuffer::Box SampleBuffer::fill_as(const std::array<ScreenCorner, 3>& given
   return box;
 }
 
-// The edges' functions and the nearness, which is linear on the screen, are computed for eight samples at once
-// (Pineda 1988, "A parallel algorithm for polygon rasterization").
+// Writes a triangle into the samples of a box. The edges' functions and the nearness, which is linear on the screen,
+// are computed for eight samples at once (Pineda 1988, "A parallel algorithm for polygon rasterization").
 template <class Integer, bool lifted>
 void SampleBuffer::cover(const std::array<ScreenCorner, 3>& v, const Box& box, double area, const Written& written) {
   using Register = typename RegisterOf<Integer>::Type;

@@ -8,7 +8,7 @@
 
 namespace supple {
 
-// A corner of a triangle on the screen.
+// Describes a corner of a triangle on the screen.
 struct ScreenCorner {
   std::int32_t x, y;  // in parts of a pixel, from the lower left of the picture
   float nearness;     // one over the distance along the viewing direction [1/m]
@@ -47,15 +47,16 @@ class SampleBuffer {
   // themselves such triangles hide each other by where they are. They must be filled after all others.
   Box fill_lifted(const std::array<ScreenCorner, 3>& corners, std::uint32_t number, float factor);
 
-  // Return the numbers in a pixel's samples, zero where there is none, and their nearness.
+  // Returns the numbers of the triangles that a pixel's samples show, zero where a sample shows none.
   const std::uint32_t* numbers(int x, int y) const { return &numbers_[at(x, y)]; }
-  // A nearness is negative where a lifted triangle is seen.
+  // Returns the nearness of what a pixel's samples show; negative where that is a lifted triangle.
   const float* nearness(int x, int y) const { return &nearness_[at(x, y)]; }
 
  private:
   static constexpr int lanes = 8;
 
-  // Says how a triangle is compared with what a sample shows.
+  // Describes what is written for a triangle: its number, the samples into which it goes, and the factor of a lifted
+  // one.
   struct Written {
     std::uint32_t number;
     Samples which;

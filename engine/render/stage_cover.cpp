@@ -105,8 +105,8 @@ StageCover::Frame StageCover::at(const std::vector<DrawMesh>& meshes, const Draw
   return frame;
 }
 
-// The disc goes along with what the camera follows, which stays near its middle. Otherwise it becomes the smallest disc
-// that holds both itself and what leaves it.
+// Moves the ground's lit disc along with what the camera follows, which stays near the disc's middle. Where the camera
+// follows nothing, the disc becomes the smallest one that holds both itself and what leaves it.
 void StageCover::follow_with_light(const std::vector<Ball>& balls, const DrawList& list, Frame& frame) const {
   constexpr double slack = 0.2;  // of the radius, by which what is followed moves before the light does
   if (list.followed) {
@@ -124,8 +124,8 @@ void StageCover::follow_with_light(const std::vector<Ball>& balls, const DrawLis
   }
 }
 
-// The map lies in the plane of right and up; its texels stay on the grid that they have at rest, as long as its size
-// stays.
+// Moves the shadow map, and makes it larger, where bodies leave it. The map lies in the plane of right_ and up_; its
+// texels stay on the grid that they have at rest, as long as its size stays.
 void StageCover::follow_with_shadow(const std::vector<Ball>& balls, Frame& frame) const {
   const auto in_map = [&](const Vec3& p) { return Vec3(right_.dot(p), up_.dot(p), to_light_.dot(p)); };
   const Vec3 center = in_map(rest_.shadow_center);

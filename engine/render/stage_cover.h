@@ -17,10 +17,10 @@ class StageCover {
   // Describes what is covered in a frame [m].
   struct Frame {
     Vec3 light_center;    // of the ground's lit disc
-    double light_radius;  // of the stage on it
+    double light_radius;  // of that disc
     Vec3 shadow_center;   // of the ball that the shadow map covers
     double shadow_radius;
-    Vec3 shade_center;    // of the square under which contact shade is computed
+    Vec3 shade_center;    // of the square of the ground in which contact shade is computed
     double shade_extent;  // edge of the square
   };
   Frame at(const std::vector<DrawMesh>& meshes, const DrawList& list) const;

@@ -10,7 +10,7 @@ namespace supple {
 Sticker::Sticker(int width, int height)
     : width_(std::max(width, 0)), height_(std::max(height, 0)), pixels_(4 * std::size_t(width_) * height_, 0.0f) {}
 
-// Porter and Duff's "over" (1984), with colours that are multiplied by their coverage.
+// Lays a colour over a pixel by Porter and Duff's "over" (1984), with colours that are multiplied by their coverage.
 void Sticker::cover(int x, int y, const Vec3& color, double opacity) {
   if (x < 0 || y < 0 || x >= width_ || y >= height_ || opacity <= 0) return;
   float* pixel = &pixels_[4 * (std::size_t(y) * width_ + x)];

@@ -15,7 +15,7 @@ constexpr double free_edge = 0.05;
 constexpr double longest_line = 26;  // over the em: about 50 letters, which are read at a glance
 constexpr double most_of_height = 1.0 / 3;
 
-// White on this plate is read on white: their contrast is above 7 to 1.
+// Letters on this plate can be read even where the picture is white: their contrast to the plate is above 7 to 1 there.
 const Vec3 plate_color(0.05, 0.05, 0.06), letter_color(0.98, 0.98, 0.97);
 constexpr double plate_opacity = 0.72;
 
@@ -26,7 +26,7 @@ int line_width(int width, int em) {
   return std::max(1, static_cast<int>(std::min(safe, longest_line * em)));
 }
 
-// Holds a piece of text that is not broken, and how far it reaches: by itself, and with the space after it.
+// Holds a piece of text that is not broken, whether a space follows it, and its width without that space [pixels].
 struct Piece {
   std::string text;
   bool space_after = false;

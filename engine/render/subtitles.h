@@ -27,7 +27,7 @@ class Subtitles {
   // none.
   PixelRect show(const std::string& text);
 
-  // Lays it over the picture.
+  // Lays the subtitle of show() over the picture.
   void draw(Image& image) const;
 
  private:

@@ -27,8 +27,8 @@ double shine(double gloss, const Finish& finish, bool painted) {
   return rough_above + *finish.roughness;
 }
 
-// Returns the way after which a third of the light is left that has entered a surface [m]. Light that meets cloth has
-// come through; what is this far from it still lets some pass.
+// Returns the way in a body after which a third of the light is left that has entered it [m]. A cloth is thin; for it,
+// this is how far away towards the lamp a thing lies that leaves it a third of the light.
 double way_of_light(const DrawMesh& mesh) {
   constexpr double through_solid = 0.25, behind_cloth = 0.03;  // over the body's size
   return (mesh.cloth ? behind_cloth : through_solid * mesh.finish.translucent) * mesh.rest.diagonal();
@@ -119,7 +119,7 @@ SurfaceBuffers::~SurfaceBuffers() {
   gl_.DeleteVertexArrays(1, &array_);
 }
 
-// An empty buffer cannot be read as a texture, so each has room for one element.
+// Makes a buffer, which has room for one element at least, because an empty one cannot be read as a texture.
 void SurfaceBuffers::make_lookup(Lookup& lookup, GLenum format, std::size_t bytes, const void* data, GLenum usage) {
   gl_.GenBuffers(1, &lookup.buffer);
   gl_.BindBuffer(GL_TEXTURE_BUFFER, lookup.buffer);

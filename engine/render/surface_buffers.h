@@ -55,7 +55,7 @@ class SurfaceBuffers {
   Lookup flats_;           // by vertex: place on the flat cloth; empty when no mesh is cloth
   Lookup materials_;       // by mesh, see material_texels
   Lookup tints_;           // by vertex: the file's linear colour, and the number of its texture from one or zero
-  Lookup texture_places_;  // by vertex; both empty when no mesh has colours of its file
+  Lookup texture_places_;  // by vertex: place in that texture; tints_ and this are empty without colours of files
   Lookup values_;          // by vertex: the field; empty when no mesh shows one
   std::vector<float> place_data_, normal_data_, value_data_;
 };

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t most_texels = 48'000'000;  // of all levels: 384 MB, and within what software rasterisers take
 
-// The texels of an axis that a coarser one covers, with their shares of it.
+// Holds the texels along an axis that a texel of the coarser level covers, with their shares of it.
 struct Cover {
   int first = 0, count = 0;
   std::array<float, 3> share = {};
@@ -132,7 +132,7 @@ TextureBuffer::~TextureBuffer() {
   for (const GLuint* buffer : {&texel_buffer_, &level_buffer_}) gl_.DeleteBuffers(1, buffer);
 }
 
-// An empty buffer cannot be read as a texture, so each has room for one element.
+// Makes a buffer, which has room for one element at least, because an empty one cannot be read as a texture.
 void TextureBuffer::make(GLuint& buffer, GLuint& texture, GLenum format, std::size_t bytes, const void* data) {
   gl_.GenBuffers(1, &buffer);
   gl_.BindBuffer(GL_TEXTURE_BUFFER, buffer);

@@ -22,7 +22,7 @@ class TextureBuffer {
   TextureBuffer(const TextureBuffer&) = delete;
   TextureBuffer& operator=(const TextureBuffer&) = delete;
 
-  // Returns the number that a mesh's first texture has here; that of others follow.
+  // Returns the number that a mesh's first texture has here; those of its other textures follow.
   int first_of(const DrawMesh& mesh) const;
 
   // Makes a program's samplers texels and levels read these buffers. Returns the first unit that is still free.
@@ -37,7 +37,7 @@ class TextureBuffer {
   GLuint texel_buffer_ = 0, texels_ = 0, level_buffer_ = 0, levels_ = 0;
 };
 
-// A texture in linear light, four values of 16 bits a pixel, rows from the bottom.
+// Holds a texture in linear light: four values of 16 bits a pixel, rows from the bottom.
 struct LinearTexture {
   int width = 0, height = 0;
   std::vector<std::uint16_t> texels;

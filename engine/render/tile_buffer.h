@@ -24,7 +24,7 @@ class TileBuffer {
   TileBuffer(const TileBuffer&) = delete;
   TileBuffer& operator=(const TileBuffer&) = delete;
 
-  // corners: those of triangles, x y each, in clip coordinates, in the form that Tiles::corners returns.
+  // Draws triangles. corners: x y by corner, in clip coordinates, in the form that Tiles::corners() returns.
   void draw(const std::vector<float>& corners) const {
     gl_.BindVertexArray(array_);
     gl_.BindBuffer(GL_ARRAY_BUFFER, buffer_);

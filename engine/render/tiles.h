@@ -17,15 +17,15 @@ class Tiles {
   void clear();
 
   // Marks each tile that the box of a triangle touches, and all tiles when a vertex lies behind the camera. positions:
-  // x y z by vertex; view: maps the world to clip coordinates; around: what lies so far from a triangle along the
-  // ground is marked too, in the unit of the positions.
+  // x y z by vertex; view: maps the world to clip coordinates; around: the distance from a triangle, along the ground,
+  // up to which tiles are marked too, in the unit of the positions.
   void mark(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles,
             const Eigen::Matrix4f& view, double around = 0);
 
   // Unmarks the tiles that are marked in another set of the same picture.
   void unmark(const Tiles& others);
 
-  // Unmarks the tiles of which a neighbour is not marked; beyond the picture all are.
+  // Unmarks the tiles of which a neighbour is not marked. Tiles beyond the picture count as marked.
   void narrow();
 
   void mark(int column, int row) { marked_[std::size_t(row) * columns_ + column] = 1; }
@@ -34,11 +34,11 @@ class Tiles {
 
   bool marked(int x, int y) const { return marked_[std::size_t(y) * columns_ + x] != 0; }
 
-  // A rectangle of pixels, from its lower left.
+  // Describes a rectangle of pixels by its lower left corner and its size.
   struct Area {
     int left, low, width, height;
   };
-  // Returns the smallest one around all marked tiles; of no width when none is marked.
+  // Returns the smallest rectangle around all marked tiles; it has no width when none is marked.
   Area around() const;
 
   // Returns runs of marked tiles as triangles over the picture: six corners for each run, x y each, in clip

@@ -86,11 +86,13 @@ Camera framing(const Bounds& box, const Vec3& direction, double fov_deg, double 
 
 namespace {
 
-// Describes where the eye must be along one side of the picture, so that all points lie between the two planes through
-// the eye that bound it there: eye . side lies between `least` and `most` where the eye is as near as can be.
+// Finds where the eye may be so that all points lie between two opposite borders of the picture, which are two planes
+// through the eye. Its place along `side` is at least above_ - high_ b and at most low_ b - below_, where b is its
+// place along `back`.
 class SideLimits {
  public:
-  // side: to the right or up in the picture. low, high: the tangents of the angles at both ends.
+  // side: the direction to the right or up in the picture. back: the direction from what is seen to the eye. low, high:
+  // tangents of the angles to the border on the left or below, and to the one on the right or above.
   SideLimits(std::span<const Vec3> points, const Vec3& side, const Vec3& back, double low, double high)
       : low_(low), high_(high) {
     for (const Vec3& p : points) {

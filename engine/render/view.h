@@ -17,11 +17,11 @@ Camera framing(const Bounds& box, const Vec3& direction, double fov_deg, double 
 Camera framing(std::span<const Vec3> points, const Vec3& direction, double fov_deg, double margin, double aspect,
                double kept_below);
 
-// Maps world to eye coordinates: the eye looks at the target, and up is y.
+// Returns the matrix that maps world to eye coordinates: the eye looks at the target, and up is y.
 Eigen::Matrix4f look_at(const Vec3& eye, const Vec3& target);
 
-// Maps world to clip coordinates. center, reach: the centre and radius of a ball that holds everything that can be seen
-// [m].
+// Returns the matrix that maps world to clip coordinates. center, reach: the centre and radius of a ball that holds
+// everything that can be seen [m].
 Eigen::Matrix4f view_matrix(const Camera& camera, double aspect, const Vec3& center, double reach);
 
 // Returns the least distance along the viewing direction that is seen [m]. The arguments are those of view_matrix.

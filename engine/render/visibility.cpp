@@ -17,7 +17,7 @@ constexpr float reach = 3;
 
 // A cloth is shown where it lies no deeper than this below the surface of a collider, over the cloth's size: its flat
 // triangles cut into what they lie on, as deep as contact lets them and as an edge is sharp. Colliders that lie further
-// in front of it along a ray than this many times as much hide it in any case.
+// in front of it along a ray than `most_along_ray` times as much hide it in any case.
 constexpr double cut_in = 0.0015, most_along_ray = 6;
 
 // Surfaces that lie on the ground count as above it.
@@ -194,7 +194,7 @@ void Visibility::fill(const std::array<ScreenCorner, 3>& corners, std::uint32_t 
   }
 }
 
-// number: of the mesh's first triangle, counted from one.
+// number: the number of the mesh's first triangle, counted from one.
 void Visibility::fill_mesh(const DrawMesh& mesh, const std::vector<float>& positions, const Eigen::Matrix4f& view,
                            std::uint32_t number) {
   project(positions, view);

@@ -16,10 +16,10 @@ namespace supple {
 
 class Visibility {
  public:
-  // The triangles of all meshes count through, in the order of the meshes.
+  // The triangles of all meshes are numbered from one, mesh by mesh, in the order of the list.
   Visibility(int width, int height, int samples, const std::vector<DrawMesh>& meshes);
 
-  // Takes other meshes, whose triangles count anew.
+  // Takes other meshes, and numbers their triangles from one again.
   void renew(const std::vector<DrawMesh>& meshes);
 
   // Finds what a frame shows. positions: x y z by mesh and vertex [m]; view: maps the world to clip coordinates, of
@@ -28,7 +28,7 @@ class Visibility {
   void find(const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions,
             const Eigen::Matrix4f& view, double nearest, double pixel);
 
-  // Two numbers for each pixel, rows from the bottom: its first surface and its second. The lower 24 bits are a
+  // Returns two numbers for each pixel, rows from the bottom: its first surface and its second. The lower 24 bits are a
   // triangle, counted from one, or zero; the upper 8 are the samples that show its surface. Only marked tiles are up to
   // date.
   const std::vector<std::uint32_t>& surfaces() const { return surfaces_; }
@@ -37,17 +37,17 @@ class Visibility {
   // See SampleBuffer::move_samples.
   void move_samples(double x, double y) { buffer_.move_samples(x, y); }
 
-  Tiles& tiles() { return tiles_; }  // in which a pixel shows something
+  Tiles& tiles() { return tiles_; }  // those in which a pixel shows something
   const Tiles& tiles() const { return tiles_; }
-  const Tiles& full() const { return full_; }  // in which all samples do
+  const Tiles& full() const { return full_; }  // those in which all samples show something
   std::vector<float> sample_places() const { return buffer_.places(); }
 
   // Returns the distance along the viewing direction of what the first sample of a pixel shows; infinity for nothing.
   double distance(int x, int y) const { return 1.0 / std::abs(buffer_.nearness(x, y)[0]); }
 
  private:
-  // A corner that is cut off has to be computed before it is projected: clip coordinates and the height over the
-  // ground.
+  // Holds a corner of a triangle before it is projected, when the triangle can still be cut: clip coordinates without
+  // the third, and the height over the ground.
   struct WorldCorner {
     float x, y, w, height;
   };
@@ -58,7 +58,7 @@ class Visibility {
   ScreenCorner on_screen(const WorldCorner& corner) const;
   std::uint8_t outside(const WorldCorner& corner) const;
   void cut(std::vector<WorldCorner>& polygon) const;
-  // factor: on the nearness against other meshes; 0 where the mesh is seen where it is.
+  // factor: the factor on the nearness against other meshes; 0 where the mesh is seen where it is.
   void fill(const std::array<ScreenCorner, 3>& corners, std::uint32_t number, const DrawMesh& mesh, float factor);
   void fill_mesh(const DrawMesh& mesh, const std::vector<float>& positions, const Eigen::Matrix4f& view,
                  std::uint32_t number);

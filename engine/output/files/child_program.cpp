@@ -19,8 +19,8 @@ namespace supple {
 
 namespace {
 
-// Waits until the child has written something or ended, or until it is asked to stop. Returns whether it was asked to
-// stop.
+// Waits until the child has written something or has ended. Where stop() returns true before that, sends the child
+// SIGINT and returns true; otherwise returns false.
 bool stopped_before_output(int output, pid_t child, const std::function<bool()>& stop) {
   pollfd waited{output, POLLIN, 0};
   do {
@@ -39,7 +39,8 @@ struct Bond {
   pid_t parent = 0;
 };
 
-// Runs in the child. Because it may have been forked from one of many threads, it makes only system calls.
+// Turns the child into the program. The child may have been forked from one of many threads, so this function makes
+// only system calls.
 [[noreturn]] void become_program(const std::vector<char*>& arguments, int input, int output, Bond bond,
                                  const sigset_t& signals) {
   // The child runs in a process group of its own: this process handles Ctrl-C on the terminal, and an encoder must be
@@ -150,7 +151,7 @@ std::optional<ProgramEnd> run_program(const std::vector<std::string>& words, con
   return wait_for_end(child, std::move(output));
 }
 
-// Holds the programs that this process feeds, for processes that are forked from it.
+// Lists the programs that this process feeds, so that a process that is forked from it can close their pipes.
 struct FedPrograms {
   std::mutex mutex;
   std::set<FedProgram*> programs;

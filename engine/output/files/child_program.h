@@ -24,15 +24,15 @@ struct ProgramEnd {
 // protocol ("http://...", "concat:...") or a pipe ("|...").
 std::string file_word(const std::filesystem::path& file);
 
-// Looks the program up in PATH and runs it with an empty standard input. Returns nothing when it is not installed.
-// stop: is called several times a second; once it returns true, the program gets SIGINT, and its end is still waited
-// for. A program that can be stopped does not outlive this process or thread: it gets SIGTERM when that ends in any
-// way. Several threads may call this function.
+// Looks the program up in PATH and runs it with an empty standard input. Returns nothing when it is not installed or
+// cannot be started. stop: a function that is called several times a second until it returns true; then the program
+// gets SIGINT, and its end is still waited for. A program that can be stopped does not outlive the calling thread: it
+// gets SIGTERM when that thread ends in any way. Several threads may call this function at the same time.
 std::optional<ProgramEnd> run_program(const std::vector<std::string>& words, const std::function<bool()>& stop = {});
 
 // Runs a program at the same time as this one and feeds its standard input. Ctrl-C on the terminal does not reach it.
-// Only one thread may use it at a time. A process that is forked from this one meanwhile has no part in it: it lets go
-// of the program's input, which would not end as long as somebody holds it.
+// Only one thread may use it at a time. A process that is forked from this one meanwhile closes its copies of the pipes
+// at once, because the program's input does not end as long as any process holds it open.
 class FedProgram {
  public:
   // Looks the program up in PATH and starts it. The program does not outlive the calling thread: it gets SIGKILL when

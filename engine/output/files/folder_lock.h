@@ -9,9 +9,9 @@
 
 namespace supple {
 
-// Throws InputError when there is something else than a folder, and when the folder holds files but no `mark`
-// ("gallery.json"), the file by which a folder is known that a `maker` ("gallery") has left. Where several
-// processes may begin at one time, the mark must be what each of them writes first.
+// Checks that results of a `maker` ("gallery") may be written into a folder: the folder does not exist, or is empty, or
+// holds the file `mark` ("gallery.json"), which shows that such a maker has left the folder. Throws InputError
+// otherwise. Where several processes may begin at one time, the mark must be the first file that each of them writes.
 void check_left_by(const std::filesystem::path& folder, const std::string& maker, const std::string& mark);
 
 enum class FolderUse { alone, with_others };
@@ -19,11 +19,11 @@ enum class FolderUse { alone, with_others };
 class FolderLock {
  public:
   // Makes the folder if there is none. The object holds no lock where that fails, or where the disk supports none.
-  // Throws InputError when another process holds the lock; where both use the folder with others, none is in the way.
+  // Throws InputError when another process holds the lock, unless both of them use the folder `with_others`.
   explicit FolderLock(const std::filesystem::path& folder, FolderUse use = FolderUse::alone);
   ~FolderLock();
-  // From now on, processes that use the folder with others may use it too. Throws InputError when one that uses it
-  // alone has come in between.
+  // Lets other processes that use the folder `with_others` use it from now on. Throws InputError when a process that
+  // uses it `alone` has taken the lock in the meantime.
   void share();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
@@ -32,7 +32,7 @@ class FolderLock {
   [[noreturn]] void refuse() const;
 
   std::filesystem::path path_;
-  int folder_;  // its file descriptor; negative without a lock
+  int folder_;  // its file descriptor; negative where it cannot be opened
 };
 
 }  // namespace supple

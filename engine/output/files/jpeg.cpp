@@ -17,15 +17,16 @@ struct JpegErrors {
   char message[JMSG_LENGTH_MAX];
 };
 
-// The library must not return from an error, and is C, through which no exception may pass.
+// Leaves the library after an error by a jump: the library must not go on, and no exception may pass through its C
+// code.
 [[noreturn]] void leave(j_common_ptr info) {
   auto* errors = reinterpret_cast<JpegErrors*>(info->err);
   info->err->format_message(info, errors->message);
   std::longjmp(errors->back, 1);
 }
 
-// Returns false after an error. bytes: room for `size` bytes, which suffice; `size` becomes how many there are. No
-// object with a destructor may live in this function, which errors leave by a jump.
+// Compresses a picture. Returns false after an error. bytes: room for `size` bytes, which is enough; `size` becomes the
+// number of bytes that are used. No object with a destructor may live in this function, which errors leave by a jump.
 bool compress(int width, int height, const std::uint8_t* rgb, int quality, unsigned char* bytes, unsigned long& size,
               JpegErrors& errors) {
   jpeg_compress_struct info{};

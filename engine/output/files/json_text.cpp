@@ -19,11 +19,11 @@ std::string exact_json_text(const Json& json, int indent) {
 
 namespace {
 
-// The library writes values by recursion, so deeper ones are not taken in. What this program writes has the depth of a
-// scene, which is below.
+// Texts with more levels are not read, because the library writes values by recursion. What this program writes has as
+// many levels as a scene, which are fewer.
 constexpr int most_levels = 2000;
 
-// Tells whether lists and objects of the text lie deeper in each other than that. Text that is not JSON may be judged
+// Tells whether lists and objects of the text are nested by more than most_levels. Text that is not JSON may be judged
 // wrongly.
 bool is_too_deep(std::string_view text) {
   int levels = 0;
@@ -43,7 +43,7 @@ bool is_too_deep(std::string_view text) {
 
 template <class Json>
 Json parsed_json(std::string_view text) {
-  // An empty text is what the parser refuses in the way that callers know.
+  // The parser refuses an empty text with the exception that callers expect.
   return Json::parse(is_too_deep(text) ? std::string_view() : text);
 }
 

@@ -9,8 +9,9 @@
 
 namespace supple {
 
-// The place that a body's surface and motion are written relative to: zero, except far from the world's origin, where
-// single precision would lose the shape (1.6 cm at 2e5 m). A power of two divides it, so that nothing is rounded.
+// Returns the place relative to which a body's surface and motion are written [m]: zero, except far from the world's
+// origin, where single precision would lose the shape (at 2e5 m it has steps of 1.6 cm). Its coordinates are multiples
+// of a power of two that is at least the body's size, so that nothing is rounded.
 Vec3 motion_origin(const Positions& rest);
 
 // Writes points less `origin` with nine significant digits, as many as point caches hold; a comment in the first line
@@ -18,9 +19,9 @@ Vec3 motion_origin(const Positions& rest);
 void write_obj(const std::filesystem::path& path, const Positions& points, const Triangles& triangles,
                const Vec3& origin = Vec3::Zero());
 
-// The first line that tells an origin; empty where that is zero.
+// Returns the line with which a file begins where the origin is not zero; empty where it is zero.
 std::string origin_line_of_obj(const Vec3& origin);
-// The origin that a file's first line tells; zero where it tells none.
+// Returns the origin that a file's first line tells; zero where it tells none [m].
 Vec3 origin_of_obj(const std::filesystem::path& path);
 
 }  // namespace supple

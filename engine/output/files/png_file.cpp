@@ -117,7 +117,8 @@ bool looks_whole(const std::filesystem::path& png) {
 
 namespace {
 
-// Reads a picture. The samples, in a format that libpng names, become the rgb of the result, also those of coverage.
+// Reads a picture. format: libpng's name for the form of the samples, all of which go into `rgb` of the result, those
+// of coverage too.
 PngImage read_as(const std::filesystem::path& path, std::uint32_t format) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;

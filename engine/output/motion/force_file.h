@@ -1,6 +1,7 @@
-// Keeps the forces of colliders on a body's vertices, frame by frame, beside its motion: what a drawing needs of a run
-// that does not follow from the positions. Only vertices with a force take room. The file is of our own form: a header,
-// and for each frame the number of its vertices and, in ascending order, their numbers with the force as three floats.
+// Keeps the forces of all contacts on a body's vertices, frame by frame, beside the file of its motion: a drawing of a
+// saved run needs them, and they do not follow from the positions. Only vertices with a force take room. The form of
+// the file is our own: a header, and for each frame the number of its vertices and, in ascending order, their numbers
+// with the force as three floats.
 #pragma once
 
 #include <cstdio>

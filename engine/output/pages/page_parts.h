@@ -15,8 +15,8 @@ std::string page_begin(const std::string& title, std::string_view style);
 // Returns the scripts and the end of a document. script: the page's own.
 std::string page_end(std::string_view script);
 
-// Returns a file as a data: address, so that a page needs no other file. type: of the file, such as "image/png". Throws
-// InputError naming the file where it cannot be read.
+// Returns a file as a data: address, so that a page needs no other file. type: the media type of the file, such as
+// "image/png". Throws InputError naming the file where it cannot be read.
 std::string data_address(const std::filesystem::path& file, std::string_view type);
 
 // Returns the colour of a graph's curve, as a style has it; the colours of a page on a dark screen are lighter ones.

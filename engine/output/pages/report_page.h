@@ -32,10 +32,10 @@ struct ReportPage {
   std::vector<ReportSection> sections = {};
 };
 
-// Writes folder/index.html, which contains every picture, and nothing from elsewhere, and the files that it
-// names: CSV and JSON of all tables, CSV and SVG of all plots. Rows have the same numbers as in the CSV. No two tables,
-// plots or pictures may share a name. Returns why plots have no picture, one line each; the page says so in their
-// places. Throws RunError when a file cannot be written.
+// Writes folder/index.html, which contains every picture and loads nothing from elsewhere. Also writes the files to
+// which it links: CSV and JSON of all tables, CSV and SVG of all plots. Rows have the same numbers as in the CSV. No
+// two tables, plots or pictures may share a name. Returns why plots have no picture, one line each; the page says so in
+// their places. Throws RunError when a file cannot be written.
 std::vector<std::string> write_page(const ReportPage& page, const std::filesystem::path& folder);
 
 }  // namespace supple

@@ -88,7 +88,8 @@ std::string plot_csv(const ReportPlot& plot) {
   return csv_text(records);
 }
 
-// Between single quotes, gnuplot neither expands nor unescapes anything. Control characters have no place in an SVG.
+// Puts a text between single quotes, where gnuplot neither expands nor unescapes anything. Control characters, which
+// have no place in an SVG, become spaces.
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) {

@@ -9,7 +9,7 @@
 namespace supple {
 
 struct PlotSeries {
-  std::string name;                    // its name in the legend; with an empty one it is left out
+  std::string name;                    // name in the legend, which leaves out series with an empty name
   std::vector<double> x = {}, y = {};  // of one length
   bool thick = false;                  // marks what the report is about: orange, wide, above the others
   bool dashed = false;

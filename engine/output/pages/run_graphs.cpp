@@ -38,7 +38,8 @@ std::vector<FrameSeries> by_body(const std::vector<FrameRow>& rows, const std::s
   return result;
 }
 
-// Returns the deepest rows of all pairs of bodies that touched each other, the deepest pair first.
+// Returns, for each pair of bodies that touched each other, its row with the greatest depth; the deepest pair comes
+// first.
 std::vector<PairRow> deepest_of_pairs(const std::vector<FrameRow>& rows) {
   std::vector<PairRow> deepest;
   for (const FrameRow& row : rows) {
@@ -126,13 +127,13 @@ std::vector<FrameGraph> graphs_of(const std::vector<FrameRow>& rows) {
 
 namespace {
 
-// The range of a vertical axis, and the values that are marked on it.
+// Holds the range of a vertical axis, and the values that are marked on it.
 struct Axis {
   double lower = 0, upper = 1;
   std::vector<double> ticks;
   bool logarithmic = false;
 
-  // From 0 at the bottom to 1 at the top.
+  // Returns the place of a value, from 0 at the bottom to 1 at the top.
   double place(double value) const {
     if (!logarithmic) return (value - lower) / (upper - lower);
     return std::log10(std::max(value, lower) / lower) / std::log10(upper / lower);
@@ -174,8 +175,8 @@ Axis axis_of(const FrameGraph& graph) {
   return axis;
 }
 
-// The curve in a square from (0, 0), the upper left corner, to (1000, 1000). It leads on over frames without a value;
-// what a logarithmic axis cannot show interrupts it.
+// Returns the curve as a path of SVG in a square from (0, 0), the upper left corner, to (1000, 1000). The curve leads
+// on over frames without a value, and is interrupted by values that a logarithmic axis cannot show.
 std::string path_of(const FrameSeries& series, const Axis& axis) {
   std::string path;
   bool drawing = false;

@@ -1,5 +1,5 @@
-// The graphs on the page of a run: values by frame, and their picture as HTML with SVG, to which the page's script adds
-// a cursor.
+// Makes the graphs on the page of a run: values by frame, and their picture as HTML with SVG, to which the page's
+// script adds a cursor.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace supple {
 
-// A value in each frame; NaN where a frame has none.
+// Holds a value for each frame; NaN where a frame has none.
 struct FrameSeries {
   std::string name;
   std::vector<double> values;
@@ -22,8 +22,8 @@ struct FrameGraph {
   bool first_apart = false;  // the first frame may leave the axis: it compiles shaders and warms caches
 };
 
-// Returns the graphs for which the rows have values: times, errors, stretch, contacts and penetration of bodies in
-// colliders, and of pairs of bodies. There must be rows.
+// Returns the graphs for which the rows have values: times, errors, stretch, contacts of each body and its depth in
+// colliders, and contacts and depths of pairs of bodies. There must be rows.
 std::vector<FrameGraph> graphs_of(const std::vector<FrameRow>& rows);
 
 // Returns a graph as HTML. first: the number of its first series on the page, for the script. from, to: the times of

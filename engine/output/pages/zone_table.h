@@ -24,7 +24,7 @@ struct Deadline {
   double ms = 0;       // 1000 / fps
   long frames = 0;     // of all repeats, except for the first of each
   long late_wall = 0;  // by the time from a frame's begin to its end on its thread, with waiting for later stages
-  long late_work = 0;  // by the sum of its stages: step, draw list, render and encode
+  long late_work = 0;  // by the sum of its stages: step, draw list, render and compress
 };
 Deadline deadline_of(const ZoneProfile& profile);
 

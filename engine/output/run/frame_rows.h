@@ -16,7 +16,7 @@ class FrameRows {
   FrameRows() = default;
   // Refers to rows in memory, which must outlive this object.
   explicit FrameRows(const std::vector<FrameRow>& rows) : rows_(&rows), size_(int(rows.size())) {}
-  // Takes the first rows of an open file that has one of them a line (row_line). name: the name of the file, for
+  // Takes the first `size` rows of an open file that has one row a line (row_line). name: the name of the file, for
   // messages.
   FrameRows(std::shared_ptr<std::FILE> file, std::filesystem::path name, int size)
       : file_(std::move(file)), name_(std::move(name)), size_(size) {}

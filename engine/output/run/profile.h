@@ -13,38 +13,41 @@
 
 namespace supple {
 
-// Describes the contact with one collider at the end of a frame.
+// Describes the contact of a body with one collider at the end of a frame.
 struct ColliderRow {
   std::string name;
   double penetration = 0;  // the surface's largest depth inside it, over the body's size
-  double force = 0;        // on the body [N]
-  double far_side = 0;     // how far a part of the surface that went through it reaches out beyond it [m]
+  double force = 0;        // size of its force on the body [N]
+  double far_side = 0;     // how far parts of the surface that it cuts off reach out of it on its far side [m]
 };
 
-// Describes the contact with colliders; it is absent where a scene has none.
+// Describes the contacts of a body in a frame; it is absent where the scene has no colliders. Contacts of all kinds
+// count: with colliders, with other bodies, and of the body with itself. Depths are those in colliders alone. Where the
+// steps of several bodies are made together, changes and cycles are those of all of them.
 struct ContactRow {
-  double collide_ms = 0;
-  int contacts = 0;        // vertices in contact at the end of the frame
-  int changes = 0;         // vertices that came into contact or left it, over the frame's iterations
-  int cycles = 0;          // iterations that restored the contact set of the one before last
+  double collide_ms = 0;   // time to find contacts
+  int contacts = 0;        // contacts in force at the end of the frame
+  int changes = 0;         // contacts that came or went, over the frame's iterations
+  int cycles = 0;          // iterations that restored the contacts of the one before last
   double penetration = 0;  // the surface's largest depth inside a collider, over the body's size
   std::vector<ColliderRow> colliders = {};
 };
 
-// Describes how two bodies touched each other at the end of a frame.
+// Describes how two bodies touched each other at the end of a frame, or how one touched itself.
 struct PairRow {
-  std::array<std::string, 2> bodies;
-  int contacts = 0;           // points of either body that touch the other
-  double penetration = 0;     // of the deepest of them in the other body, over the smaller body's size
-  double force = 0;           // between the bodies [N]
-  bool expected = false;      // the depth is meant, or the bodies overlapped at the start and are still coming apart
-  bool coming_apart = false;  // the second of these, and it is not meant
+  std::array<std::string, 2> bodies;  // equal where a body touched itself
+  int contacts = 0;                   // contacts between them; ContactRow of each body counts those in force again
+  double penetration = 0;             // depth of the deepest of these contacts, over the smaller body's size
+  double force = 0;                   // size of the force between the bodies [N]
+  bool expected = false;              // whether a depth is meant, or is left of an overlap at the start
+  bool coming_apart = false;          // whether a depth is left of an overlap at the start, and not meant
 };
 
-// Describes two bodies that meet and are deep in each other, as their positions alone show it.
+// Describes two bodies that meet and are deep in each other, as their positions alone show it; or two cloths that cross
+// each other, or one that crosses itself.
 struct DeepRow {
   std::array<std::string, 2> bodies;
-  double share = 0;               // of the depth in the smaller body's size
+  double share = 0;               // depth over the smaller body's size; 0 where cloths cross
   std::array<double, 3> place{};  // of the deepest vertex [m]
 };
 
@@ -56,20 +59,23 @@ struct BalanceRow {
   double exchanged() const { return held + worked; }
 };
 
-// Holds what the steps of a frame know of themselves, summed up. Bodies whose steps are made together share it.
+// Sums up what the steps of a frame know of themselves. Where the steps of several bodies are made together, all of
+// these bodies have the same iterations, trials, objective, errors of equation 12 and reason of the end. Each body has
+// its share of the times, by vertices, and its own error of motion.
 struct StepRow {
   double step_ms = 0, evaluate_ms = 0, solve_ms = 0, lbfgs_ms = 0, matrix_ms = 0, other_ms = 0;
-  int iterations = 0, newton_iterations = 0, line_search = 0;  // the second: of these, those that finished hard steps
-  double objective_start = 0, objective_end = 0;               // [J]
-  double error_estimate = 0, motion_estimate = 0;              // of the frame's worst step
+  // Numbers of all iterations, of those among them that finished hard steps, and of points that line searches tried.
+  int iterations = 0, newton_iterations = 0, line_search = 0;
+  double objective_start = 0, objective_end = 0;   // of the frame's last step [J]
+  double error_estimate = 0, motion_estimate = 0;  // of the frame's worst step
   bool unsolved = false;  // a step of the frame did not come near its minimum (base/unsolved_step.h)
   std::string stop_reason;
   std::vector<std::array<int, 2>>
       budget_cuts;  // BudgetCuts (sim/model/budget_cuts.h) by substep; empty without a budget
   bool error_measured = false;
   std::optional<double> error;         // equation 12; null where the start is already the minimum to round-off
-  std::optional<double> motion_error;  // how far the solved motion is, over the step's own motion
-  // False where the reference of the two errors did not converge: they are those against the lowest iterate it found.
+  std::optional<double> motion_error;  // distance from the solved step, over the motion in that step
+  // Whether the reference of both errors converged; if not, they are against the lowest iterate that it found.
   bool reference_converged = true;
 };
 
@@ -80,13 +86,13 @@ struct BodyRow : StepRow {
   std::optional<std::array<double, 5>> energy;  // kinetic, elastic, gravitational, springs, contact [J]; when asked for
   std::optional<BalanceRow> balance;            // absent in profiles of earlier versions
   std::optional<int> inverted, collapsed;       // numbers of tetrahedra turned inside out, and without volume
-  // How much more the most stretched edge of the drawn skin is stretched than the elements; absent where no skin is
-  // carried and drawn, or none of its edges is stretched by half.
+  // How many times as much as the elements the most stretched edge of the drawn skin is stretched; absent where no skin
+  // is carried and drawn, or none of its edges is stretched by half.
   std::optional<double> skin_excess;
   std::optional<double> in_picture;  // share of its surface that lies within the picture's borders; where it is drawn
   std::optional<double> jiggle;      // jiggle of the body over its size; only for bodies with a handle
-  // How far two places that a seam joins are apart at most, beside what they are meant to be, over the mean length of
-  // an edge; only for bodies with seams.
+  // The largest difference between a gap in a seam and the gap that is meant there, over the mean length of an edge;
+  // only for bodies with seams.
   std::optional<double> open_seam;
   std::optional<ContactRow> contact;
 };
@@ -107,9 +113,11 @@ struct FrameRow {
   std::optional<double> compress_ms;         // of the frame's file; absent without one
   std::uint64_t state_hash = 0;
   std::optional<bool> as_in_session;  // whether the states are those of the live session that wrote the replay
-  std::vector<std::array<std::string, 2>> met;  // bodies that pass through each other, first in this frame
-  std::vector<DeepRow> deep;                    // bodies that are deep in each other, first in this frame
-  std::vector<PairRow> pairs;                   // bodies that touch each other
+  // Pairs of bodies that do not meet, and that pass through each other in this frame for the first time.
+  std::vector<std::array<std::string, 2>> met;
+  // Pairs of bodies that meet, and that are deep in each other, or cross, in this frame for the first time.
+  std::vector<DeepRow> deep;
+  std::vector<PairRow> pairs;  // pairs of bodies that touch each other, and bodies that touch themselves
   std::vector<BodyRow> bodies;
 };
 
@@ -129,9 +137,11 @@ struct StageSummary {
 };
 std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows);
 
-// Says what went wrong physically and did not end the run, a sentence for each body and kind: energy from nothing,
-// elements that are inverted or without volume at the end, bodies that pass through each other or are deep in each
-// other, and depths inside colliders (penetration_warnings).
+// Returns the warnings at the end of a run but for that of unsolved steps (unsolved_steps.h): a sentence for each thing
+// that went wrong and did not end the run. They tell of energy from nothing, stretched skins, elements that are
+// inverted or without volume at the end, seams that are open at the end, states that differ from those of a live
+// session, bodies that pass through each other or are deep in each other, depths in colliders and parts on their far
+// sides (penetration_warnings), and bodies that are out of pictures or cut by their borders.
 std::vector<std::string> warnings_of(const std::vector<FrameRow>& rows);
 
 class FrameRows;  // frame_rows.h
@@ -147,11 +157,12 @@ std::string row_line(const FrameRow& row);
 FrameRow row_of_line(const std::string& line, const std::string& source);
 std::vector<FrameRow> read_profile(const std::filesystem::path& path);
 
-// Gives a table for people: the stages, then the solver's figures by body, then what each collider did to it, and then
-// what bodies did to each other.
+// Returns tables for people: the times of the stages, the solver's figures of each body, then the depths and forces of
+// bodies at each collider, and of bodies at each other.
 std::string profile_table(const std::vector<FrameRow>& rows);
 
-// Tells for each body and collider where the body's surface was deeper inside than it should be.
+// Returns sentences about bodies at colliders: one where a body's surface was deeper in a collider than 1 % of the
+// body's size, and one where a part of a body was on the far side of a collider.
 std::vector<std::string> penetration_warnings(const std::vector<FrameRow>& rows);
 
 }  // namespace supple

@@ -399,8 +399,8 @@ std::string RowTally::table() const {
 
 namespace {
 
-// Says how far a body was from its solution in its worst step, and whether that is seen. A share of a motion is seen
-// where there is much of it.
+// Says how far a body was from its solution in its worst step, and whether that is seen. A tenth of a step's motion, or
+// more, is seen where the body moves fast.
 std::string distance_words(const UnsolvedStep& step) {
   constexpr double seen = 0.1;  // of a step's motion
   if (step.motion_estimate <= 0) return fmt::format("with an error of about {:.2g} in energy", step.error_estimate);

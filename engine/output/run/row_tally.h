@@ -1,5 +1,6 @@
 // Sums up the rows of a run as they pass by, so that no more of them need be in memory than one: distributions of
-// times, what went wrong, and tables for people. Of each frame it keeps the few numbers that percentiles need.
+// times, what went wrong, and tables for people. Of each frame it keeps the few numbers that percentiles need. The
+// sentences of the warnings at a run's end are written in row_tally.cpp.
 #pragma once
 
 #include <string>
@@ -25,20 +26,22 @@ struct BodyTally {
   int contacts = 0, frames = 0;
   int unsure_errors = 0;  // frames in which the reference of the errors did not converge
   std::optional<double> jiggle;
-  // Energy from nothing: where it first was much, and where most [J].
+  // Energy from nothing: the first frame whose balance has much of it, and the frame whose balance has most; -1: none.
+  // Then what was gained from nothing, and what was exchanged, by the latter balance [J].
   int first_gain = -1, worst_gain = -1;
   double gained = 0, exchanged = 0;
   double skin_excess = 0;  // the largest
   int skin_frame = 0;
-  // Frames that were drawn, and of these: those in which it is out of the picture, and cut by its border.
+  // Numbers of frames that were drawn, and of those among them in which the body is out of the picture, and in which
+  // the picture's border cuts it.
   int drawn = 0, out = 0, cut = 0;
   int first_out = -1, first_cut = -1;
   double least_in_picture = 1;
   int inverted = 0, collapsed = 0;  // in the last frame
-  double open_seam = 0;             // the same
+  double open_seam = 0;             // in the last frame
 };
 
-// Tallies what one collider did to one body.
+// Tallies the depths of one body in one collider, and the forces of the collider on the body.
 struct TouchTally {
   std::string body, collider;
   double deepest = 0;  // over the body's size
@@ -48,14 +51,14 @@ struct TouchTally {
   double force_sum = 0, largest_force = 0;  // [N]
 };
 
-// Tallies what two bodies did to each other.
+// Tallies the depths of two bodies in each other, or of one in itself, and the forces between them.
 struct PairTally {
   std::array<std::string, 2> bodies;
   double deepest = 0;  // over the smaller body's size
   int deepest_frame = 0;
   double unexpected = 0;  // the deepest of those depths that are not expected (PairRow)
   int unexpected_frame = 0, deep_frames = 0;
-  double left = 0;      // of an overlap at the start, in the last row that shows the bodies coming apart
+  double left = 0;      // depth left of an overlap at the start, in the last row that shows the bodies coming apart
   int left_frame = -1;  // the frame of that row
   double force_sum = 0, largest_force = 0;  // [N]
 };
@@ -66,7 +69,7 @@ struct DeepTally {
   int frame;
 };
 
-// Tells since when two bodies pass through each other.
+// Tells since when two bodies that do not meet pass through each other.
 struct MetTally {
   std::array<std::string, 2> bodies;
   int frame;
@@ -93,9 +96,10 @@ class RowTally {
     for (const FrameRow& row : rows) add(row);
   }
 
-  // Rows come in the order of their frames.
+  // Adds the row of a frame. Rows come in the order of their frames.
   void add(const FrameRow& row);
-  // Adds a warning that was said when the film began; those of profile and JSON begin with it.
+  // Adds a warning that was said when the film began. The warnings in profile.json and in the result of --json begin
+  // with such remarks.
   void remark(std::string warning) { remarks_.push_back(std::move(warning)); }
   const std::vector<std::string>& remarks() const { return remarks_; }
   void set_unsolved_words(UnsolvedWords words) { unsolved_words_ = std::move(words); }
@@ -104,18 +108,22 @@ class RowTally {
   std::uint64_t last_hash() const { return last_hash_; }  // state_hash of the last row
   const std::vector<UnsolvedStep>& unsolved() const { return unsolved_; }
 
-  // These functions give what those of the same purpose give for rows (profile.h, verdict.h).
+  // Some of these functions return for the rows that were added what functions elsewhere return for a list of rows:
+  // stages() as summarize(), warnings() as warnings_of(), penetrations() as penetration_warnings(), table() as
+  // profile_table() (profile.h); work() as work_of() (verdict.h).
   std::vector<StageSummary> stages() const;
   std::vector<std::string> warnings() const;
   std::vector<std::string> penetrations() const;
   // Tells, a sentence for each pair, which bodies were deeper in each other than they should be.
   std::vector<std::string> depths_of_pairs() const;
+  // Tells which bodies are out of pictures, or cut by their borders.
   std::vector<std::string> missing_in_pictures() const;
   // Returns the last of the warnings: "3 of 400 frames did not come near their solution: ...", with the worst step of
   // each body and whether it is seen; empty where there is none.
   std::string unsolved_warning() const;
   std::string table() const;
-  // Says that the film is as a live session played it; empty where none has, or where it is not.
+  // Says that the film is as the live session played it that wrote the replay; empty where there was no such session,
+  // or where the film differs.
   std::string session_text() const;
   FrameWork work(double encoding) const;
 
@@ -127,10 +135,11 @@ class RowTally {
 
   std::vector<std::string> remarks_;
   int frames_ = 0, last_frame_ = -1;
-  int compared_ = 0, first_other_ = -1;  // frames that a live session has played, and the first that is not as there
+  // The number of frames that a live session has played, and the first frame that is not as it was there; -1: none.
+  int compared_ = 0, first_other_ = -1;
   bool measured_ = false, touching_ = false;
   std::uint64_t last_hash_ = 0;
-  StageTally stages_[5];  // in the order of stage_names
+  StageTally stages_[5];  // in the order of stage_list (row_tally.cpp)
   std::vector<BodyTally> bodies_;
   std::vector<TouchTally> touches_;
   std::vector<PairTally> pairs_;

@@ -22,14 +22,14 @@ struct BodyComparison {
   int vertices_a = 0, vertices_b = 0;
   double size = 0;                      // diagonal of the box around it in A's first frame [m]
   std::vector<FrameDistance> distance;  // by frame; empty when the numbers of vertices differ
-  int worst_frame = 0;                  // where the largest distance is largest
+  int worst_frame = 0;                  // the frame with the largest distance of all
   std::optional<int> first_difference;  // the first frame whose positions differ
   int saved_a = 0, saved_b = 0;         // frames that the saved motion holds
   double step_ms_a = 0, step_ms_b = 0;  // median of its steps over all frames but the first [ms]
 };
 
 struct RunComparison {
-  int frames_a = 0, frames_b = 0, frames = 0;  // whole frames; in both
+  int frames_a = 0, frames_b = 0, frames = 0;  // numbers of whole frames: of A, of B, in both
   std::optional<int> first_difference;         // the first frame whose state_hash differs
   std::vector<double> time_s;                  // by frame
   std::vector<BodyComparison> bodies;          // that both have, in the order of A

@@ -39,8 +39,8 @@ std::optional<long> frame_of(const std::filesystem::path& file, const char* endi
   return std::stol(stem);
 }
 
-// These functions tell whether a run writes files of such names in the folder. They are given the name without the
-// suffix of an unfinished file.
+// Each of these functions tells whether a run writes a file of this name into a folder of one kind: motion, fields,
+// checkpoint, or a state. The name comes without the suffix of an unfinished file.
 bool is_motion(const std::filesystem::path& file) {
   return file.extension() == ".pc2" || file.extension() == ".forces" || file.extension() == ".obj" ||
          file == "colliders.csv";
@@ -79,7 +79,7 @@ void remove_states(const std::filesystem::path& states) {
   }
 }
 
-// Removes what a run has left, except for run.json.
+// Removes the motion, the fields and the states that a run has left.
 void remove_run(const std::filesystem::path& run) {
   remove_own(run / "motion", is_motion);
   remove_own(run / "fields", is_field);

@@ -17,10 +17,10 @@ namespace supple {
 struct RunInfo {
   std::vector<std::string> command;       // the command line
   std::string scene_file;                 // an absolute path
-  std::optional<std::string> scene_text;  // of the scene, where it came from standard input
-  std::vector<Vec3> framed;               // outermost points of what a first pass found for the camera; empty: none [m]
-  bool preview = false;                   // a quarter of the size, with coarse meshes
-  std::vector<std::string> settings;      // path=value over the scene's
+  std::optional<std::string> scene_text;  // the scene, where no file holds it: from standard input, or made for a model
+  std::vector<Vec3> framed;               // outermost points that a first pass found for the camera; empty: none [m]
+  bool preview = false;                   // whether pictures have a quarter of the size, and meshes are coarse
+  std::vector<std::string> settings;      // path=value, in place of the scene's values
   std::optional<std::size_t> sweep_point;
   std::string scene_json;   // the scene at the start of the film, after --set
   std::string replay_json;  // the file of a replay, else empty
@@ -35,25 +35,26 @@ struct RunInfo {
   int frames = 0;                                   // number of finished frames
   std::vector<int> resumed;                         // frames at which it was resumed
   std::string video;                                // name of its file, or why there is none
-  std::string ended;                                // "done", "interrupted" or the failure's message
+  std::string ended;                                // "running", "done", "interrupted" or the failure's message
 };
 
-// Returns `framed` of a run.json; empty where it has none.
+// Returns RunInfo::framed from the text of a run.json; empty where it has none. Throws InputError where it is damaged.
 std::vector<Vec3> framed_in(const std::string& info_json);
 
-// Writes the information as run.json holds it.
+// Returns the information as the text of run.json.
 std::string info_json(const RunInfo& info);
 
 // Returns the file of a frame's picture in a folder of pictures.
 std::filesystem::path picture_file(const std::filesystem::path& frames, int index);
-// Returns the file of a frame's pass in a folder of passes. mesh: whose mask it is; empty for other passes.
+// Returns the file of a frame's pass in a folder of passes. mesh: the name of the mesh whose mask it is; empty for
+// other passes.
 std::filesystem::path pass_file(const std::filesystem::path& passes, PicturePass pass, const std::string& mesh,
                                 int index);
-// Removes the passes of frames from `first` on, and those that are incomplete. Other files stay.
+// Removes the passes of frames from `first` on, also incomplete ones. Other files stay.
 void remove_passes(const std::filesystem::path& passes, int first);
 // Removes the film in a folder, of any format, with its poster and sheet.
 void remove_film(const std::filesystem::path& folder);
-// Removes the pictures of frames from `first` on, and those that are incomplete. Other files stay.
+// Removes the pictures of frames from `first` on, also incomplete ones. Other files stay.
 void remove_pictures(const std::filesystem::path& frames, int first);
 
 class RunFolder {

@@ -15,8 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Tables are made by body, so each frame must have the bodies of the first frame, and the same bodies must have contact
-// figures.
+// Checks that each frame has the bodies of the first frame, and that the same bodies have contact figures, because
+// tables are made by body.
 void check_bodies(const std::vector<FrameRow>& rows, const std::string& source) {
   for (const FrameRow& row : rows) {
     const bool same = std::ranges::equal(row.bodies, rows.front().bodies, [](const BodyRow& a, const BodyRow& b) {

@@ -21,8 +21,8 @@ struct RunRecord {
   std::filesystem::path surface(const std::string& body) const { return folder / "motion" / (body + ".obj"); }
   // Tells how the run ended, as run.json says: "done", "interrupted", "running" or the failure.
   std::string ended() const;
-  // Returns the frames a second, by the times of the rows. A film that goes on from an earlier one does not begin at
-  // the time of its first frame, so that one row alone tells nothing: nullopt.
+  // Returns the frames a second, by the times of the rows; nothing where there are fewer than two. (One row does not
+  // tell the rate, because a film that goes on from another run does not begin at time 0.)
   std::optional<double> frame_rate() const;
 };
 

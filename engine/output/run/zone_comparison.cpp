@@ -94,8 +94,8 @@ struct Part {
 };
 
 // Returns the zone to which a zone's time is counted, or nothing when it is not tested. Waiting for workers is counted
-// to the zone that requested their work, because they do its work. How much each worker does is random, and waiting for
-// another stage is not work.
+// to the zone that requested their work, because they do its work. Not tested are the workers, because how much each of
+// them does is random, and waiting for another stage, which is not work.
 std::string part_of(const ZoneTimes& zone) {
   if (zone.thread == "worker") return "";
   if (zone.name() == "wait for workers") return ZoneTimes{"", zone.path.substr(0, zone.path.rfind('/'))}.name();

@@ -24,9 +24,9 @@ constexpr int least_repeats_compared = 4;
 
 struct ZoneChange {
   std::string thread, name;
-  double before_ms = 0, after_ms = 0;  // a frame
+  double before_ms = 0, after_ms = 0;  // time for a frame
   double change = 0;                   // after over before, less 1
-  double against_rest = 0;             // the same divided by that of the rest of the frame; 0 for the frame
+  double against_rest = 0;             // ratio after/before over that of the rest of the frame, less 1; 0 for the frame
   double noise = 0;                    // 95 % of the regroupings stay below this
   double chance = 1;                   // share of regroupings in which any zone changes as clearly
   bool named = false;

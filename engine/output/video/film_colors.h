@@ -1,5 +1,5 @@
-// The colours of a film: pictures of sRGB bytes as planes of BT.709 luma and chroma, as encoders take them. Where a
-// file does not say which matrix it has, players assume this one.
+// Converts pictures of sRGB bytes to the colours of a film: planes of BT.709 luma and chroma, as encoders take them.
+// Where a file does not say which matrix it has, players assume that of BT.709.
 #pragma once
 
 #include <cstdint>

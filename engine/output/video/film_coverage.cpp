@@ -36,8 +36,8 @@ Level coarser(Level& fine) {
 
 }  // namespace
 
-// Push and pull (Gortler et al. 1996, "The lumigraph", section 3.4), with blocks in place of smooth filters: what they
-// differ in is not seen.
+// Uses push and pull (Gortler et al. 1996, "The lumigraph", section 3.4), with blocks in place of smooth filters; the
+// difference is not seen.
 std::vector<std::uint8_t> filled_colors(int width, int height, std::span<const std::uint8_t> rgb,
                                         std::span<const std::uint8_t> alpha) {
   SUPPLE_CHECK(rgb.size(), ==, 3 * alpha.size());

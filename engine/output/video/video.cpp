@@ -19,8 +19,8 @@ namespace supple {
 namespace {
 
 // Returns how many frames there are for each one that the film has. A GIF counts the time of a frame in hundredths of a
-// second, and browsers show one of a single hundredth for ten. With two or more, ffmpeg spreads them so that the film
-// keeps its speed.
+// second, and browsers show a frame of a single hundredth for ten. Where frames last two hundredths or more, ffmpeg
+// rounds their times so that the film keeps its speed.
 int frames_for_one(FilmFormat format, double fps) {
   constexpr double fastest_gif = 50;
   return format == FilmFormat::gif ? std::max(1, static_cast<int>(std::ceil(fps / fastest_gif - 1e-9))) : 1;
@@ -45,7 +45,7 @@ constexpr const char* preset = "superfast";
 constexpr const char* without_random_numbers = "-fflags +bitexact";
 
 // Returns the encoder's words for a film in the film's own colours. The numbers of a quality are constant rate factors,
-// which mean another loss for each codec.
+// and for ProRes scales of the quantiser. They mean another loss for each codec.
 std::string codec_words(const FilmCoding& coding, int threads) {
   const auto of_quality = [&coding](int draft, int good, int best) {
     return coding.quality == FilmQuality::draft ? draft : coding.quality == FilmQuality::good ? good : best;
@@ -90,8 +90,9 @@ const char* pixel_format(const FilmCoding& coding) {
   }
 }
 
-// Returns the words that name the film's colours. The transfer function is that of the frames, sRGB, for which ProRes
-// has no name: there it is that of BT.709, as programs for cutting assume. Its encoder takes the names from the frames.
+// Returns the words that name the film's colours. The transfer function is that of the frames, sRGB, except in ProRes,
+// which has no name for it: there the name is that of BT.709, as programs for cutting assume. The encoder of ProRes
+// takes the names from the frames.
 const char* color_words(FilmFormat format) {
   if (format == FilmFormat::mov)
     return "-vf setparams=range=tv:color_primaries=bt709:color_trc=bt709:colorspace=bt709 -color_range tv "
@@ -99,7 +100,7 @@ const char* color_words(FilmFormat format) {
   return "-color_range tv -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1";
 }
 
-// Keeps ffmpeg to files and pipes, whatever a name looks like. It wants to be told for its input and for its output.
+// Keeps ffmpeg to files and pipes, whatever a name looks like. ffmpeg must be told so for its input and for its output.
 constexpr const char* local_alone = "-protocol_whitelist file,pipe";
 
 std::vector<std::string> ffmpeg_words(const std::filesystem::path& part, int width, int height, const FrameRate& fps,

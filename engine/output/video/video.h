@@ -50,7 +50,7 @@ struct FilmCoding {
 // Tells whether films of a format can be transparent.
 bool holds_coverage(FilmFormat format);
 
-// Returns what a film of pictures at this rate cannot hold of them, for people.
+// Returns sentences for people about what is lost where pictures at this rate become a film.
 std::vector<std::string> coding_warnings(const FilmCoding& coding, const FrameRate& fps);
 
 // Returns the name of the film's file in its folder, "video.mp4"; empty where there is no film.
@@ -99,7 +99,7 @@ class VideoEncoder {
   std::vector<std::uint8_t> planes_;  // scratch
   int frames_ = 0;
   int every_ = 1;       // of the frames, the film has one in so many
-  bool taken_ = true;   // all frames so far
+  bool taken_ = true;   // whether ffmpeg took all frames so far
   std::string unread_;  // why a file could not be added
   double cpu_ms_ = 0;   // of ffmpeg
   std::optional<FedProgram> ffmpeg_;
