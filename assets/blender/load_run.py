@@ -168,6 +168,20 @@ def load_body(name, surface, cache):
     return [tuple(Vector(point) + rest.origin) for point in rest.points], frames
 
 
+NAMED_SIZES = {"portrait": (1080, 1920), "square": (1080, 1080), "720p": (1280, 720), "1080p": (1920, 1080),
+               "4k": (3840, 2160)}
+
+
+def picture_size(output):
+    """Width and height of the film's pictures; output.size counts before width and height."""
+    size = output.get("size")
+    if size in NAMED_SIZES:
+        return NAMED_SIZES[size]
+    if size:
+        return tuple(int(side) for side in size.split("x"))
+    return output.get("width", 1280), output.get("height", 720)
+
+
 def film_camera(scene, points):
     """The camera that the scene names; what it leaves open frames the bodies from the front."""
     asked = scene.get("camera", {})
@@ -177,8 +191,7 @@ def film_camera(scene, points):
     target = Vector(asked.get("target", (lower + upper) / 2))
     away = (upper - lower).length / math.tan(fov / 2)
     eye = Vector(asked.get("position", target + away * Vector((0, 0.16, 1)).normalized()))
-    output = scene.get("output", {})
-    return eye, target, fov, output.get("width", 1280), output.get("height", 720)
+    return (eye, target, fov) + picture_size(scene.get("output", {}))
 
 
 def add_camera(scene, points):

@@ -204,6 +204,9 @@ class ConfigTable {
   // Returns true or false, or a list of texts; the fallback when the key is absent or wrong. `texts`: what the texts of
   // a list are, such as "names of bodies".
   std::variant<bool, std::vector<std::string>> boolean_or_texts(const Key& key, bool fallback, const char* texts) const;
+  // Returns a list of texts; it is empty when the key is absent or wrong. `texts`: what they are, such as "names of
+  // bodies".
+  std::vector<std::string> required_texts(const Key& key, const char* texts) const;
   bool is_text(const char* key) const;
   // Returns an existing path, looked up in the folder of the file that names it or among the assets; empty when the key
   // is absent or wrong.

@@ -428,6 +428,21 @@ std::variant<bool, std::vector<std::string>> ConfigTable::boolean_or_texts(const
   return fallback;
 }
 
+std::vector<std::string> ConfigTable::required_texts(const Key& key, const char* texts) const {
+  const std::string allowed = fmt::format("a list of {}", texts);
+  const toml::node* node = find(key, "list of texts", "required", allowed);
+  std::vector<std::string> values;
+  if (node == nullptr) return values;
+  if (const toml::array* list = node->as_array()) {
+    for (const toml::node& element : *list) {
+      if (const auto value = element.value_exact<std::string>()) values.push_back(*value);
+    }
+    if (!values.empty() && values.size() == list->size()) return values;
+  }
+  wrong(key, *node, allowed);
+  return {};
+}
+
 bool ConfigTable::is_text(const char* key) const {
   const toml::node* node = table_->get(key);
   return node != nullptr && node->is_string();

@@ -57,16 +57,9 @@ Eigen::Quaterniond turn_of_copy(ScatterTurn rule, UniformNumbers& numbers) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(numbers.between(0, 2 * std::numbers::pi), Vec3::UnitY()));
 }
 
-// Reads the names of bodies. A list is what boolean_or_texts has texts for; here it may not be true or false.
 std::vector<std::string> read_names(const ConfigTable& table) {
-  const auto given = table.boolean_or_texts({"bodies", "", "names of the bodies whose copies it makes, in turn"}, false,
-                                            "names of bodies");
-  const auto* names = std::get_if<std::vector<std::string>>(&given);
-  if (names == nullptr || names->empty()) {
-    table.complain("'bodies' is missing: such as bodies = [\"hippo\", \"bunny\"]");
-    return {};
-  }
-  return *names;
+  if (!table.has("bodies")) table.complain("'bodies' is missing: such as bodies = [\"hippo\", \"bunny\"]");
+  return table.required_texts({"bodies", "", "names of the bodies whose copies it makes, in turn"}, "names of bodies");
 }
 
 Scattering read_scattering(const ConfigTable& table, std::uint64_t scene_seed) {

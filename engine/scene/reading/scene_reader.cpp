@@ -132,7 +132,8 @@ void read_bodies(Config& config, const ConfigTable& root, SceneDef& scene, Given
 }
 
 void read_colliders(const ConfigTable& root, SceneDef& scene, GivenNames& names) {
-  for (const ConfigTable& table : root.tables({"collider", "", "rigid, and in the way"})) {
+  for (const ConfigTable& table :
+       root.tables({"collider", "", "what is in the way of bodies: rigid, unless a motion deforms it"})) {
     scene.colliders.push_back(read_collider(table));
     names.add(table, scene.colliders.back().name);
   }

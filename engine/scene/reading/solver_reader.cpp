@@ -109,8 +109,7 @@ ContactSettings read_contact(const ConfigTable& table, ContactSettings contact) 
 
 SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
   s.iterations =
-      table.integer({"iterations", "",
-                     "quasi-Newton iterations a step, at most; a step that ends worse than staying descends once more"},
+      table.integer({"iterations", "", "quasi-Newton iterations of a round; a hard step makes up to `rounds` of them"},
                     s.iterations, Range::between(1, 10000));
   s.history =
       table.integer({"history", "", "window m of L-BFGS; 0 is plain quasi-Newton"}, s.history, Range::between(0, 100));
@@ -131,9 +130,9 @@ SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
       table.word<LineSearch>({"line_search", "", "how a step length is accepted; none takes every full step"},
                              s.line_search, {.allowed = all_names<LineSearch>(), .gone = {{"wolfe", "\"armijo\""}}});
   s.armijo = table.number({"armijo", "", "gamma of the sufficient decrease"}, s.armijo, Range::above(0, 0.5));
-  s.target_error = table.number(
-      {"target_error", "", "stop once both of the solver's own error estimates are below; 0 does all iterations"},
-      s.target_error, Range::between(0, 1));
+  s.target_error =
+      table.number({"target_error", "", "stop once both of the solver's own error estimates are below; 0: no target"},
+                   s.target_error, Range::between(0, 1));
   s.still = table.number({"still", "body sizes",
                           "stop once less than this is left to go, so that what lies still costs next to nothing; 0 or "
                           "levels = 1 does all iterations"},
