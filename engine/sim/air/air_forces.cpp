@@ -131,11 +131,11 @@ Vec3 AirForces::area_vector(const Model& model, Eigen::Index t, const Positions&
   return 0.5 * (middle(x, model.surface(t, 1)) - a).cross(middle(x, model.surface(t, 2)) - a);
 }
 
-// Evaluates the triangles of a part, and keeps their forces and area vectors. Returns the drag's share of g, or of its
-// difference, with what the gas adds to it. With the area vector N(s) and the mean way d of a triangle whose corners go
-// straight from the reference (s = 0) to x (s = 1), it sweeps the volume of the integral of d . N(s) over s. N is
-// quadratic in s, so that Simpson's rule gives this exactly. Over a closed surface the swept volumes add up to the
-// change of its volume, with the digits of the ways.
+// Returns what drag and gas of a part add to g at x, or how that differs from the reference (null: none), and keeps the
+// triangles' shares of grad D and area vectors. Let N(s) be the area vector, and d the mean way, of a triangle whose
+// corners go straight from the reference (s = 0) to x (s = 1). The integral of d . N(s) over s is the volume that the
+// triangle sweeps. N is quadratic in s, so that Simpson's rule gives this exactly. Over a closed surface the swept
+// volumes add up to the change of its volume, with the digits of the ways.
 double AirForces::evaluate_triangles(const Model& model, Threads* threads, ActivePart& part, const Positions& x,
                                      const Positions* reference) {
   const Part& of = model.parts[part.part];
@@ -196,7 +196,8 @@ double AirForces::evaluate_triangles(const Model& model, Threads* threads, Activ
                     (reference == nullptr ? part.law.energy(volume) : part.law.energy_change(volume - swept, swept));
 }
 
-// Adds to the gradient at each vertex what its triangles have; returns the slope of that along the direction.
+// Adds the shares of drag and gas to the gradient of a part's free vertices; returns the slope of what is added along
+// the direction.
 double AirForces::gather(const Model& model, Threads* threads, const ActivePart& part, const Positions& direction,
                          Positions& gradient) {
   const Part& of = model.parts[part.part];

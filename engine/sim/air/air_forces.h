@@ -13,8 +13,8 @@
 // has come to its terminal speed feels the whole force, which a force that is made smaller for stability's sake would
 // not give.
 //
-// Gas. The energy is that of gas_law.h in the volume V of a part's surface, evaluated where the elements are; its
-// gradient is minus the pressure times dV/dx, a third of each triangle's area vector at each corner.
+// Gas. The energy is that of gas_law.h in the volume V of a part's surface, evaluated at the same positions as the
+// elements; its gradient is minus the pressure times dV/dx, a third of each triangle's area vector at each corner.
 //
 // Not here: the wind itself (wind_field.h).
 #pragma once
@@ -27,7 +27,7 @@
 
 namespace supple {
 
-// Tells what the air adds at a point, or how that differs from a reference.
+// Holds what the air adds to g at x, or how that differs from what it adds at a reference.
 struct AirChange {
   double value = 0;  // [J]
   double slope = 0;  // of the gradient along a direction, where the gradient was wanted [J]
@@ -81,10 +81,10 @@ class AirForces {
   struct ActivePart {
     std::size_t part;
     bool drags, has_gas;
-    double across, along;  // rho c_n / 2 and rho c_t / 2, with a solid's share [kg/m^3]
+    double across, along;  // rho c_n / 2 and rho c_t / 2, half of these for a solid [kg/m^3]
     double sign;           // of the signed volume at rest
     GasLaw law;
-    double volume_slope;  // dU/dV at the last add(), with the sign: minus the pressure [Pa]
+    double volume_slope;  // `sign` times dU/dV at the last add(); dU/dV is minus the pressure [Pa]
   };
   // Describes a triangle of a part that has drag, at the step's start.
   struct Facet {
@@ -106,7 +106,7 @@ class AirForces {
   Vec3 beyond_wind(const Model& model, Eigen::Index triangle, const Positions& x) const;
   Vec3 drag_force(const ActivePart& part, Eigen::Index triangle, const Vec3& beyond) const;    // on the triangle [N]
   double drag_value(const ActivePart& part, Eigen::Index triangle, const Vec3& beyond) const;  // share of D [J]
-  // Returns where the gas is evaluated when a step ends at x [m].
+  // Returns where a vertex is when the gas is evaluated, in a step that ends at x [m].
   Vec3 middle(const Positions& x, std::int32_t vertex) const;
   Vec3 area_vector(const Model& model, Eigen::Index triangle, const Positions& x) const;  // in the middle [m^2]
   double volume(const Model& model, const ActivePart& part, const Positions& x) const;    // in the middle [m^3]

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double least_share = 0.05;  // of the rest volume
 
-// Returns log(1 + z) - z, which is lost in the difference where z is small.
+// Returns log(1 + z) - z, by a series where z is small and the difference would lose its digits.
 double log_beyond_slope(double z) {
   if (std::abs(z) > 0.01) return std::log1p(z) - z;
   double sum = 0;

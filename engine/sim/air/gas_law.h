@@ -1,8 +1,8 @@
 // Computes the energy of gas in a volume V and its derivatives. With an open amount the pressure above the atmosphere's
 // is constant, p, and the energy is -p (V - V0). A fixed amount at constant temperature (Boyle's law) keeps p V = p0 V0
-// with p absolute, and has the energy -p0 V0 log(V / V0) + p_atm (V - V0), where the atmosphere outside does the second
-// share. Below a twentieth of V0 this energy continues as its second-order Taylor polynomial, which is finite for
-// volumes that are turned inside out. Not here: the volume of a surface (air_forces.h).
+// with p absolute, and has the energy -p0 V0 log(V / V0) + p_atm (V - V0), where the second term is the work on the
+// atmosphere outside. Below a twentieth of V0 this energy continues as its second-order Taylor polynomial, which is
+// finite for volumes that are turned inside out. Not here: the volume of a surface (air_forces.h).
 #pragma once
 
 #include "sim/model/air_inputs.h"

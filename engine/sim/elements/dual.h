@@ -16,7 +16,7 @@ struct Dual {
   explicit Dual(double constant) : value(constant), d{V(0.0), V(0.0), V(0.0)} {}
   Dual(const V& v, const V& d0, const V& d1, const V& d2) : value(v), d{d0, d1, d2} {}
 
-  // Makes the variable number `which`.
+  // Returns the variable with the number `which` (0 to 2) at the value v.
   static Dual variable(const V& v, int which) {
     Dual x;
     x.value = v;
@@ -24,7 +24,7 @@ struct Dual {
     return x;
   }
 
-  // Returns a function of this number that has the given value and slope here.
+  // Returns the function of this number whose value here is `at` and whose derivative here is `slope`.
   Dual mapped(const V& at, const V& slope) const { return {at, slope * d[0], slope * d[1], slope * d[2]}; }
 
   friend Dual operator+(const Dual& a, const Dual& b) {

@@ -12,13 +12,14 @@
 namespace supple {
 namespace {
 
-// A block has these registers in single precision: one, or two where the machine's registers are narrow.
+// A block fills one to four of these registers in single precision, by how wide the machine's registers are.
 constexpr int single_lanes = 2 * lanes < block_width ? 2 * lanes : block_width;
 using SingleLanes = xsimd::make_sized_batch_t<float, single_lanes>;
 static_assert(list_stride == 4);
 
-// Takes the positions of the elements' corners from a list. corner: of the first lane, block_width apart for each
-// corner. In single precision they are positions relative to the first corner, which is subtracted in double precision.
+// Takes the positions of the elements' corners from a list. corner: the indices into the list, from the first lane's
+// for corner 0 on; those for the next corner are block_width further. In single precision the positions are relative to
+// the first corner, which is subtracted in double precision.
 template <class V, int corners>
 [[gnu::always_inline]] inline void load_corners(const double* list, const std::uint16_t* corner, V (&x)[corners][3]) {
   using T = typename V::value_type;
@@ -46,7 +47,7 @@ template <class V, int corners>
   }
 }
 
-// Adds the forces on all corners but the first to a list, and takes their sum from the first corner's. Elements are
+// Adds the forces on all corners but the first to a list, and subtracts their sum at the first corner. Elements are
 // added in their order, so that the sums do not depend on the width of the registers.
 template <class V, int corners>
 [[gnu::always_inline]] inline void add_forces(const V (&force)[corners - 1][3], const std::uint16_t* corner,

@@ -61,8 +61,8 @@ struct LogStrains {
   }
 };
 
-// Holds what a density is at some strains: its value, von Mises' equivalent of Kirchhoff's stress, and the work of this
-// stress on the deviatoric strain, both over rest volume.
+// Holds what a material has at some strains, by rest volume: its energy density, von Mises' equivalent of Kirchhoff's
+// stress, and the product of this stress and the deviatoric strain [Pa].
 struct StressAtStrains {
   double density, equivalent, work;
 };
@@ -83,11 +83,11 @@ StressAtStrains stress_at(const M& material, const LogStrains& strains, double f
   return {density, std::sqrt(1.5 * squared), work};
 }
 
-// Returns which share of the deviatoric strain flows, so that the stress afterwards is the yield stress that the flow
-// has left (a return mapping, implicit in the flow): the root of stress - yield between 0 and 1, by the Illinois form
-// of regula falsi. Flow would give energy where the deviatoric stress pulls against the strain, as that of St.
-// Venant-Kirchhoff does under strong compression: nothing flows there. `weight` is the share of the material's stress
-// that yields.
+// Returns the share of the deviatoric strain that flows, from 0 to 1: that after which the stress is the yield stress,
+// which the flow has hardened (a return mapping, implicit in the flow). It is the root of stress - yield, by the
+// Illinois form of regula falsi, or less where the plastic strain would pass its limit. Nothing flows where the
+// deviatoric stress pulls against the strain, as that of St. Venant-Kirchhoff does under strong compression: flow would
+// give energy there. weight: the share of the material's stress that yields. hardened: the plastic strain so far.
 template <class M>
 double plastic_share(const M& material, const Plasticity& rule, double weight, const LogStrains& strains,
                      double hardened) {
@@ -108,7 +108,7 @@ double plastic_share(const M& material, const Plasticity& rule, double weight, c
     const bool is_low = at_root > 0;
     (is_low ? low : high) = root;
     (is_low ? at_low : at_high) = at_root;
-    // A side that stays twice counts half.
+    // The value at a side that stays twice in a row is halved.
     if (kept == (is_low ? 1 : -1)) (is_low ? at_high : at_low) /= 2;
     kept = is_low ? 1 : -1;
   }
@@ -141,8 +141,8 @@ inline void add_flow(const Svd3<double>& parts, const LogStrains& strains, doubl
   for (int i = 0; i < 9; ++i) kept[i] = result[i] / size;
 }
 
-// Finds D_m^-1 F_p^-1, with which an element that has flowed is strained by F_e alone. rest: D_m^-1 by rows, whose
-// entries are `stride` numbers apart, as those of `present` are. kept: F_p by rows.
+// Writes D_m^-1 F_p^-1 to `present`: in the place of D_m^-1 it gives an element's F_e in the place of F. rest: D_m^-1
+// by rows, whose entries are `stride` numbers apart, as those of `present` are. kept: F_p by rows.
 template <class T>
 void flowed_rest_shape(const double* rest, std::size_t stride, const double* kept, T* present) {
   Matrix3<double> plastic;

@@ -12,7 +12,7 @@ namespace {
 
 static_assert(block_width % lanes == 0);
 
-// Takes the fields of the elements in a register.
+// Returns one field of the elements of a register. at: the place of the first lane's number among the chunk's fields.
 template <class V>
 V load_field(const ElementChunk& chunk, int at) {
   if constexpr (is_single<V>) {

@@ -27,14 +27,14 @@ std::vector<ElementRecord> element_records(const TetMesh& mesh, const std::vecto
                                            const std::vector<FlatTriangle>& triangles);
 
 // Holds the share of an element in L = sum_e G_e^T (weight) G_e: the rows of G_e^T, one for each corner, and their
-// weight [N/m].
+// weight. The product of two rows and the weight is in N/m.
 struct SystemTerm {
   std::array<std::array<double, 3>, most_corners> row{};
   double weight;
 };
 
-// Returns the term of a material with k = 1 Pa, of a spring with a stiffness of 1 N/m, or of a triangle whose two
-// directions have 1 N/m.
+// Returns the term that an element has with a stiffness of 1: with k = 1 Pa for a tetrahedron, 1 N/m for a spring, and
+// 1 N/m in both directions for a triangle.
 SystemTerm unit_term(const ElementRecord& element);
 
 // Returns the term of a triangle.

@@ -1,19 +1,20 @@
-// The rotation of the polar decomposition F = R S, which the stretch-based materials need; one matrix a SIMD lane.
+// Computes the rotation of the polar decomposition F = R S, which the stretch-based materials need, for one matrix in
+// each SIMD lane.
 #pragma once
 
 #include "sim/elements/svd.h"
 
 namespace supple {
 
-// The rotation R with det R = 1 that maximises tr(R^T F), in a handful of operations. Its trace product lambda = tr(R^T
-// F) is the largest root of
+// Returns the rotation R with det R = 1 that maximises tr(R^T F), in a handful of operations. The maximum lambda =
+// tr(R^T F) is the largest root of
 //   lambda^4 - 2 I lambda^2 - 8 J lambda + I^2 - 4 II = 0,   I = |F|^2, II = |cof F|^2, J = det F,
 // and R = d lambda / d F follows by implicit differentiation (Lin, Chitalu, Komura 2022, "Isotropic ARAP energy using
-// Cauchy-Green invariants"). The root is found by Newton from the upper bound sqrt(I + 2 sqrt(3 II)): from there the
-// iteration falls monotonically. The formula divides by 2 (s1+s2)(s1+s3)(s2+s3); lanes where that is small, or where
-// something overflowed, take R = U V^T from the singular values, which is accurate to a few eps for every F, and some
-// maximiser where the two smallest stretches cancel. Elsewhere R is within about 1e-12 of it (the root's own
-// conditioning), and near rest within a few eps.
+// Cauchy-Green invariants"). The root is found by Halley's method from the upper bound sqrt(3 I): from there the
+// iteration falls monotonically. The formula divides by 2 (s1+s2)(s1+s3)(s2+s3). Lanes where that is small, where the
+// iteration has not converged, or where something overflowed, take R = U V^T from the singular values, which is
+// accurate to a few eps for every F, and is some maximiser where the two smallest stretches cancel. Elsewhere R is
+// within about 1e-12 of U V^T in double precision (the root's own conditioning), and near rest within a few eps.
 template <class V>
 Matrix3<V> polar_rotation(const Matrix3<V>& f) {
   const Matrix3<V> cofactors = cofactor(f);
@@ -23,8 +24,8 @@ Matrix3<V> polar_rotation(const Matrix3<V>& f) {
   const V two(2.0);
   const V constant = madd(norm2, norm2, V(-4.0) * second), eight_determ = V(8.0) * determ;
   V root = sqrt(V(3.0) * norm2);
-  // A step of Halley's method leaves the third power of what was left, over the gap to the other roots squared: after
-  // such a small step, round-off is left.
+  // A step of Halley's method leaves the third power of the error before it, over the squared gap to the other roots.
+  // So after a step as small as this, only round-off is left.
   constexpr double small_step = is_single<V> ? 2e-3 : 1e-5;
   constexpr double least_denominator = is_single<V> ? 1e-2 : 1e-3;
   auto moving = root > root;

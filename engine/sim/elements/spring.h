@@ -53,8 +53,9 @@ struct SpringElement {
     }
   }
 
-  // Writes a third of the trace of the projected stiffness matrix: k (1 + 2 (1 - r/l)) / 3 [N/m]. In a net of springs,
-  // whose directions differ from one to the next, no spring needs more along its own direction.
+  // Writes a third of the trace of the projected stiffness matrix: k (1 + 2 (1 - r/l)) / 3 [N/m]. The bound `axial`
+  // (element_kernels.h) does not apply: in a net of springs, whose directions differ from one to the next, no spring
+  // needs more along its own direction.
   template <class V>
   void scalar_stiffness(const V (&x)[2][3], const V (&field)[fields], const V&, V (&out)[1]) const {
     using std::max;

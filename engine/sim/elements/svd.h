@@ -74,7 +74,8 @@ void order(Columns<V>& columns, V (&length2)[3], int p, int q) {
   length2[q] = short_one;
 }
 
-// Returns a unit vector orthogonal to the unit vector a: the axis along which a is smallest, made orthogonal.
+// Writes a unit vector orthogonal to the unit vector a to `result`: the axis along which a is smallest, made
+// orthogonal.
 template <class V>
 void across(const V (&a)[3], V (&result)[3]) {
   using std::abs;
@@ -112,7 +113,7 @@ Svd3<V> svd(const Matrix3<V>& f) {
       columns.v[j][i] = V(i == j ? 1.0 : 0.0);
     }
   }
-  constexpr int most_sweeps = 12;  // five do; columns that differ by many orders of magnitude take a few more
+  constexpr int most_sweeps = 12;  // five are enough; columns that differ by many orders of magnitude take a few more
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     const bool turned01 = turn(columns, 0, 1), turned02 = turn(columns, 0, 2), turned12 = turn(columns, 1, 2);
     if (!turned01 && !turned02 && !turned12) break;

@@ -146,7 +146,7 @@ struct TetrahedronFormula : Tetrahedron {
   template <class V>
   void stiffness(const V (&x)[4][3], const V (&field)[fields], bool project, V (&out)[45]) const;
 
-  // Defined in tetrahedron_scalar_stiffness.h.
+  // This function is defined in tetrahedron_scalar_stiffness.h.
   template <class V>
   void scalar_stiffness(const V (&x)[4][3], const V (&field)[fields], const V& axial, V (&out)[6]) const;
 };

@@ -1,9 +1,9 @@
-// The part of a tetrahedron's second derivatives that is the same for x, y and z. Of all matrices of the form S (x) I_3
-// the nearest to a Hessian H in the Frobenius norm has S_ij = tr(H_ij) / 3 over the 3 x 3 blocks H_ij (Van Loan and
-// Pitsianis 1993, "Approximation with Kronecker products"). For one element, S is V G^T K G with the symmetric tensor
-// K_ab = 1/3 sum_i d^2 psi / (dF_ia dF_ib), which is diagonal along the right singular vectors of F. There kappa_b =
-// 1/3 sum_a h_ab: h_bb is the diagonal of the Hessian over the stretches, and h_ab the mean of flip and twist of the
-// axes a and b (tetrahedron_stiffness.h). Like the Hessian's own trace it does not change when the body turns.
+// Computes the part of a tetrahedron's second derivatives that is the same for x, y and z. Of all matrices of the form
+// S (x) I_3 the nearest to a Hessian H in the Frobenius norm has S_ij = tr(H_ij) / 3 over the 3 x 3 blocks H_ij (Van
+// Loan and Pitsianis 1993, "Approximation with Kronecker products"). For one element, S is V G^T K G with the symmetric
+// tensor K_ab = 1/3 sum_i d^2 psi / (dF_ia dF_ib), which is diagonal along the right singular vectors of F. There
+// kappa_b = 1/3 sum_a h_ab: h_bb is the diagonal of the Hessian over the stretches, and h_ab the mean of flip and twist
+// of the axes a and b (tetrahedron_stiffness.h). Like the Hessian's own trace, S does not change when the body turns.
 #pragma once
 
 #include "sim/elements/tetrahedron_stiffness.h"
@@ -21,8 +21,8 @@ bool some_indefinite(const V (&h)[3][3]) {
   return some(h[0][0] < zero) || some(second < zero) || some(third < zero);
 }
 
-// Adds kappa (1 + 2 (1 - 1/l)) / 3 (G^T d)(G^T d)^T, the trace of the fibre's part over three, where l = |F d|; the
-// factor before (G^T d)(G^T d)^T is at least `axial` kappa.
+// Adds V kappa (1 + 2 (1 - 1/l)) / 3 (G^T d)(G^T d)^T, a third of the traces of the fibre's part, where l = |F d|, and
+// 1 - 1/l counts as 0 for l < 1. The factor before (G^T d)(G^T d)^T is at least `axial` V kappa.
 template <class V>
 void add_scalar_fibre(const Fibre& fibre, const Matrix3<V>& f, const V (&field)[Tetrahedron::fields], const V& axial,
                       V* out) {
@@ -41,8 +41,8 @@ void add_scalar_fibre(const Fibre& fibre, const Matrix3<V>& f, const V (&field)[
 
 }  // namespace stiffness_detail
 
-// Finds tr(H_ab) / 3 of the projected Hessian over corners 1 to 3 (packed lower triangle; corner 0 follows from
-// translations), kappa_b raised to `axial` h_bb where it is less [N/m].
+// Writes tr(H_ab) / 3 of the projected Hessian over corners 1 to 3 (packed lower triangle; corner 0 follows from
+// translations). kappa_b is raised to `axial` h_bb where it is less [N/m].
 template <bool with_fibre, class M, class V>
 void tetrahedron_scalar_stiffness(const M& material, const Fibre* fibre, const V (&x)[4][3],
                                   const V (&field)[Tetrahedron::fields], const V& axial, V (&out)[packed_size(3)]) {

@@ -1,8 +1,8 @@
-// Computes the second derivatives of a tetrahedron's energy, for Newton's method. In the basis of the singular vectors
-// of F the Hessian of an isotropic density separates into a 3 x 3 matrix over the stretches and, for each pair of axes,
-// a flip and a twist (Smith, de Goes, Kim 2019, "Analytic eigensystems for isotropic distortion energies", section 4),
-// so the nearest positive semi-definite matrix (Teran et al. 2005) costs two clamped numbers for each pair of axes and
-// a 3 x 3 eigenproblem. Derivatives of the material with respect to stretches come from its own formula (dual.h).
+// Computes the second derivatives of a tetrahedron's energy. In the basis of the singular vectors of F the Hessian of
+// an isotropic density separates into a 3 x 3 matrix over the stretches and, for each pair of axes, a flip and a twist
+// (Smith, de Goes, Kim 2019, "Analytic eigensystems for isotropic distortion energies", section 4), so the nearest
+// positive semi-definite matrix (Teran et al. 2005) costs two clamped numbers for each pair of axes and a 3 x 3
+// eigenproblem. Derivatives of the material with respect to stretches come from its own formula (dual.h).
 #pragma once
 
 #include "sim/elements/dual.h"
@@ -166,7 +166,7 @@ void add_stretches(const V (&second)[3][3], const SingularBasis<V>& basis, const
   }
 }
 
-// Adds kappa ((1 - 1/l)(1 - n n^T) + n n^T) with l = |F d|, n = F d / l.
+// Adds V kappa (G^T d)(G^T d)^T (x) ((1 - 1/l)(1 - n n^T) + n n^T) with l = |F d|, n = F d / l.
 template <class V>
 void add_fibre_stiffness(const Fibre& fibre, const Matrix3<V>& f, const V (&field)[Tetrahedron::fields], bool project,
                          V* out) {

@@ -31,7 +31,7 @@ struct Triangle {
   }
 };
 
-// Holds the columns of F, or of what is like it.
+// Holds the columns of F, or of another matrix of its shape, such as the stress.
 template <class V>
 struct PlaneColumns {
   V of[2][3];

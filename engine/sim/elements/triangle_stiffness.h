@@ -1,7 +1,7 @@
 // Computes the second derivatives of a triangle's energy. In the basis of the singular vectors of F, which is 3 x 2,
 // the Hessian of an isotropic sheet separates into a 2 x 2 matrix over the stretches, a flip and a twist in the plane
 // (tetrahedron_stiffness.h), and the two ways to turn a direction out of the plane, with the eigenvalues slope_p / s_p.
-// That of a woven sheet is the sum of those of its threads, as fibres have them, and of shear.
+// The Hessian of a woven sheet is the sum of those of its threads, which are like those of fibres, and of shear.
 #pragma once
 
 #include "sim/elements/dual.h"
@@ -180,7 +180,8 @@ PlaneHessian<V> sheet_hessian(const M& sheet, const PlaneColumns<V>& f, bool pro
   }
   h.add_motion(half * pair.flip, plus[0], plus[1]);
   h.add_motion(half * pair.twist, minus[0], minus[1]);
-  // The stretches: h00 m0 m0^T + h11 m1 m1^T + h01 (m0 m1^T + m1 m0^T), the last as squares of sum and difference.
+  // The stretches: h00 m0 m0^T + h11 m1 m1^T + h01 (m0 m1^T + m1 m0^T), the last as the square of m0 + m1 less those of
+  // both.
   V sum[2][3];
   for (int c = 0; c < 2; ++c) {
     for (int i = 0; i < 3; ++i) sum[c][i] = columns[0][0][c][i] + columns[1][1][c][i];
@@ -191,7 +192,7 @@ PlaneHessian<V> sheet_hessian(const M& sheet, const PlaneColumns<V>& f, bool pro
   return h;
 }
 
-// Adds what makes the identity in the coordinates of space: weight (v0, v1)^T (v0, v1) (x) 1.
+// Adds weight (v0, v1)^T (v0, v1) (x) 1, with the identity 1 over the coordinates of space.
 template <class V>
 void add_identity(const V& weight, const V& v0, const V& v1, PlaneHessian<V>& h) {
   for (int i = 0; i < 3; ++i) {
@@ -202,8 +203,9 @@ void add_identity(const V& weight, const V& v0, const V& v1, PlaneHessian<V>& h)
   }
 }
 
-// Each thread's part and each of the two parts of shear are projected by themselves: with g = a . b, those are shear
-// (b, a)(b, a)^T and shear g times the swap of a and b, whose positive half is |g|/2 (1, sign g)^T (1, sign g).
+// Returns the Hessian of a woven sheet. Where `project`, each thread's part and each of the two parts of shear are
+// projected by themselves. With g = a . b, the parts of shear are shear (b, a)(b, a)^T, and shear g times the exchange
+// of a and b, which has the positive half shear |g|/2 (1, sign g)^T (1, sign g).
 template <class V>
 PlaneHessian<V> sheet_hessian(const Woven& sheet, const PlaneColumns<V>& f, bool project) {
   using std::abs;
@@ -231,8 +233,9 @@ PlaneHessian<V> sheet_hessian(const Woven& sheet, const PlaneColumns<V>& f, bool
   return h;
 }
 
-// Finds a third of the trace of aa, ab and bb of the projected Hessian, with each direction at least `axial` times its
-// own stiffness along itself.
+// Writes a third of the traces of aa, ab and bb of the projected Hessian. The stiffness along each principal axis, or
+// along each thread of a woven sheet, is at least `axial` times what a stretch along it alone meets: the second
+// derivative by this stretch, or the thread's stiffness.
 template <class M, class V>
 void sheet_scalar(const M& sheet, const PlaneColumns<V>& f, const V& axial, V (&scalar)[3]) {
   using std::max;
@@ -263,8 +266,9 @@ void sheet_scalar(const M& sheet, const PlaneColumns<V>& f, const V& axial, V (&
 
 }  // namespace stiffness_detail
 
-// Writes d^2 E / dx^2 of corners 1 and 2 (6 x 6, packed; corner 0 follows from translations), or a positive
-// semi-definite matrix: the nearest one for isotropic sheets, the sum of those of the parts of woven ones. [N/m]
+// Writes d^2 E / dx^2 of corners 1 and 2 (6 x 6, packed; corner 0 follows from translations) or, where `project`, a
+// positive semi-definite matrix: the nearest one for isotropic sheets, and for woven ones the sum of those that are
+// nearest to its parts. [N/m]
 template <class M>
 template <class V>
 void TriangleFormula<M>::stiffness(const V (&x)[3][3], const V (&field)[fields], bool project, V (&out)[21]) const {

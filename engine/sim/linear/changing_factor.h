@@ -19,12 +19,12 @@ class ChangingFactor {
   // The precision is that of the solves; factors are always computed in double precision.
   explicit ChangingFactor(Precision precision = Precision::double_precision) : precision_(precision) {}
 
-  // Takes the lower triangle; entries above the diagonal are ignored. The unknowns must already be in an order with
-  // little fill.
+  // Analyses the pattern of a matrix's lower triangle; entries above the diagonal are ignored. The unknowns must
+  // already be in an order with little fill.
   void analyze(const Eigen::SparseMatrix<double>& matrix);
 
   // Factors a matrix with the pattern that was analysed. Returns false when it is not positive definite; the factor
-  // then solves nothing until another matrix has one.
+  // then solves nothing until another matrix has been factored.
   bool factorize(const Eigen::SparseMatrix<double>& matrix);
 
   // Computes x = A^-1 b. x and b have as many numbers as the matrix has rows, and may be the same.

@@ -124,7 +124,8 @@ std::int32_t CholeskyFactor::parent_of(int strip) const {
   return front.shape.rows > 0 ? strip_of_[rows_[front.first_row]] : -1;
 }
 
-// The strips of a front follow each other on a path, and those of a later one are closer to the root.
+// The strips of a front follow each other on a path to the root; of two fronts on one path, the later one is closer to
+// the root.
 std::int32_t CholeskyFactor::meeting_of(std::int32_t a, std::int32_t b) const {
   while (a >= 0 && b >= 0 && front_of_[a] != front_of_[b]) {
     std::int32_t& earlier = a < b ? a : b;

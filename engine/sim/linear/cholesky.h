@@ -37,12 +37,12 @@ class CholeskyFactor {
   CholeskyFactor(const Eigen::SparseMatrix<double>& matrix, Precision precision) { factorize(matrix, precision); }
 
   // Returns the factor of the block-diagonal matrix whose blocks, in this order, have these factors; no number is
-  // computed anew. The factors must have one precision. The result solves, and is not renewed.
+  // computed anew. The factors must have one precision. The result can solve, but must not be renewed.
   static CholeskyFactor block_diagonal(const std::vector<const CholeskyFactor*>& blocks);
 
   // Factors a lower triangle (compressed, nothing stored above the diagonal) in the order given. For a matrix with the
-  // pattern and the precision of the last one, only the numbers are computed again. Throws RunError with the number of
-  // the column when the matrix is not positive definite; the factor then solves nothing.
+  // pattern of the last one, only the numbers are computed again. Throws RunError with the number of the column when
+  // the matrix is not positive definite; the factor then solves nothing.
   void factorize(const Eigen::SparseMatrix<double>& matrix, Precision precision);
 
   // Provides memory for factoring anew, so that renew() allocates nothing. It belongs to one factor, which must stay
@@ -68,13 +68,13 @@ class CholeskyFactor {
   // Counts the multiplications and additions of one factorisation.
   double operations() const { return operations_; }
 
-  // Computes x = A^-1 b for b and x with `size` rows, interleaved. Allocates where scratch has less than
+  // Computes x = A^-1 b for b and x of `size` x 3 numbers, by rows. Allocates where scratch has less than
   // scratch_numbers().
   void solve(const double* b, double* x, AlignedVector<double>& scratch) const;
   std::size_t scratch_numbers() const;
 
   // These functions solve a half of the system in place (LinearKernels::Solve), for code that solves in parts
-  // (parted_solve.h). T: the type of precision(). strips: null for all. scratch: of front_numbers().
+  // (parted_solve.h). T: the type of precision(). strips: null for all. scratch: front_numbers() numbers.
   template <class T>
   void down(const std::vector<std::int32_t>* strips, T* x, T* scratch) const;
   template <class T>

@@ -56,8 +56,8 @@ void down_many(const FactorView& view, const std::int32_t* list, int count, T* x
 using Floats = xsimd::batch<float>;
 constexpr long floats = static_cast<long>(Floats::size);
 
-// The last `count` numbers of two vectors are multiplied a register at a time from their ends on, and the sums of the
-// lanes are added in order.
+// Multiplies the last `count` numbers of two vectors, a register at a time from their ends on, and adds the sums of the
+// lanes in order.
 struct EndProduct {
   Floats sum = Floats(0.0f);
   long done = 0;

@@ -6,8 +6,8 @@
 namespace supple {
 namespace {
 
-// Holds the rows of each column of the factor below its diagonal, ascending: those of the matrix, and those of the
-// columns whose first such row is this column.
+// Holds the rows of each column of the factor below its diagonal, ascending: those of the matrix's column, and those of
+// all columns whose first row below the diagonal is the column's own.
 struct ColumnPatterns {
   std::vector<std::int64_t> begin{0};
   std::vector<std::int32_t> rows;
@@ -46,9 +46,9 @@ ColumnPatterns column_patterns(const Eigen::SparseMatrix<double>& matrix) {
   return patterns;
 }
 
-// Children are merged into their parents as long as few zeros are stored because of that. The thresholds are CHOLMOD's
-// (nrelax, zrelax); the times of our solves confirm them to within noise, and so do those of 3n x 3n factors, where
-// wider merging is no faster either.
+// Tells whether a child is merged into its parent: as long as few zeros are stored because of that. The thresholds are
+// CHOLMOD's (nrelax, zrelax); the times of our solves confirm them to within noise, and so do those of 3n x 3n factors,
+// where wider merging is no faster either.
 bool worth_merging(int wide, std::int64_t dense, std::int64_t nonzeros) {
   const double zeros = static_cast<double>(dense - nonzeros) / static_cast<double>(dense);
   return zeros <= 0 || wide <= 4 || (wide <= 16 && zeros < 0.8) || (wide <= 48 && zeros < 0.1) || zeros < 0.05;

@@ -15,8 +15,8 @@
 
 namespace supple {
 
-// Describes the columns from first to last of the factor, which are dense; `rows` below them, ascending, are all that
-// their elimination changes.
+// Describes the columns from first to last of the factor, which are dense. Their elimination changes nothing but the
+// `row_count` rows below them, which are ascending.
 struct Supernode {
   int first, last;
   std::int64_t first_row;  // into Elimination::rows

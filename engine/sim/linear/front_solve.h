@@ -54,7 +54,7 @@ T sum_of(const Row<T>& row) {
   return sum;
 }
 
-// Subtracts a strip times its part of x from the rows below its triangle.
+// Solves with the triangle of a strip, and subtracts the strip times its part of x from the rows below the triangle.
 template <class T, int width>
 void strip_down(const T* inverse, int blocks, T* x) {
   alignas(64) T own[block_rows];

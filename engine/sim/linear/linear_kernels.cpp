@@ -92,7 +92,7 @@ struct DenseFront {
             block_rows, update_stride};
   }
 
-  // Processes `count` row blocks, at most tile_blocks.
+  // Subtracts the strips from first_strip to end_strip from `count` row blocks (at most tile_blocks) of a column block.
   void take(int first_strip, int end_strip, int row_block, int count, int column_block) const {
     using Widths = std::make_integer_sequence<int, tile_columns>;
     const int width = columns_in(column_block);

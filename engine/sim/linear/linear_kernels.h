@@ -24,7 +24,7 @@ struct FactorFront {
 // strip inverted (invert_triangles in multifrontal.h).
 struct FactorView {
   int front_count, strip_count;
-  const FactorFront* fronts;     // by their pivots
+  const FactorFront* fronts;     // in the order of their pivots
   const std::int32_t* front_of;  // by strip
   const std::int32_t* rows;
   const void* numbers;  // float or double
@@ -37,10 +37,10 @@ struct LinearKernels {
   // number one by one in the order of the pivots. Returns the first pivot that is not positive, or -1.
   int (*eliminate)(FrontShape front, double* columns, double* update);
 
-  // These functions solve the part of one front in L x = b, in place, and in L^T x = b. The triangle on the diagonal of
-  // each strip is inverted (invert_triangles in multifrontal.h). `own`: x at the front's first
-  // pivot; rows: the index in x of each row below the pivots. scratch: as many numbers as the front has padded rows,
-  // aligned like the columns.
+  // These functions solve the part of one front in L x = b (down) or in L^T x = b (up), in place, for one right-hand
+  // side. invert_triangles() (multifrontal.h) must have inverted the triangle on the diagonal of each strip. own: x at
+  // the front's first pivot. rows: the index in x of each row below the pivots. scratch: as many numbers as the front
+  // has padded rows, aligned like the columns.
   template <class T>
   using FrontStep = void (*)(FrontShape front, const T* columns, const std::int32_t* rows, T* own, T* x, T* scratch);
   FrontStep<float> front_down_float, front_up_float;
@@ -48,9 +48,9 @@ struct LinearKernels {
 
   // These functions solve L x = b (down) or L^T x = b (up) in place for three right-hand sides. x: n x 4, of which the
   // last column is unused. They use the strips of an ascending list, which contains all later strips of each of its
-  // fronts, or all strips (null). Numbers that belong to other strips are read only by down, as targets, and are not
-  // used by up if the list contains all strips on which its own depend. scratch: three times the padded rows of the
-  // largest front, aligned to cache lines.
+  // fronts, or all strips (null). Of numbers that belong to other strips, down changes only those in rows below the
+  // strips of the list, and up uses none if the list contains all strips on which its own depend. scratch: three times
+  // the padded rows of the largest front, aligned to cache lines.
   template <class T>
   using Solve = void (*)(const FactorView& factor, const std::int32_t* list, int count, T* x, T* scratch);
   Solve<float> down_float, up_float;
@@ -61,18 +61,19 @@ struct LinearKernels {
   void (*down_many_float)(const FactorView& factor, const std::int32_t* list, int count, float* x);
   void (*down_many_double)(const FactorView& factor, const std::int32_t* list, int count, double* x);
 
-  // products[i * product_tile + j] = a_i . b_j over the last count[i * product_tile + j] numbers of both. Vectors are
-  // given by their ends, which are aligned to cache lines. A product does not depend on the others.
+  // Computes products[i * product_tile + j] = a_i . b_j over the last count[i * product_tile + j] numbers of both.
+  // Vectors are given by their ends, which are aligned to cache lines. A product does not depend on the others.
   void (*end_products)(const float* const* a_end, const float* const* b_end, const std::int32_t* count,
                        float* products);
 
-  // dots[i] = a_i . b over [begin, end)
+  // Computes dots[i] = a_i . b over [begin, end).
   void (*dots)(const double* const* a, int count, const double* b, long begin, long end, double* dots);
-  // r += sum_i c_i a_i over [begin, end)
+  // Adds sum_i c_i a_i to r over [begin, end).
   void (*add_scaled)(const double* const* a, const double* c, int count, double* r, long begin, long end);
 };
 
-// Returns the loops of the widest variant that this machine can run, or of any variant that it can (base/variants.h).
+// Returns the loops of the widest variant that this machine can run, or those of a given variant, which must be one
+// that it can run (base/variants.h).
 const LinearKernels& linear_kernels();
 const LinearKernels& linear_kernels(int variant);
 

@@ -34,9 +34,9 @@ class Multifrontal {
   std::vector<std::int32_t> target_;    // padded row of the parent's front by row of a child
   std::vector<std::int32_t> in_strip_;  // place in a strip of that front by row of a child
   std::vector<std::int32_t> waiting_;   // nodes whose update matrices wait
-  // The two stacks hold the update matrices of even and of odd levels. The children of a node are all on the other
-  // stack than its own matrix, so that this can be summed up in its final place, and each stack is read only from its
-  // top.
+  // The two stacks hold the update matrices of even and of odd levels. Those of a node's children are all on the one
+  // stack and the node's own on the other, so that its own is summed up in its final place, and each stack is read only
+  // from its top.
   AlignedVector<double> stack_[2];
   std::int64_t stacked_[2] = {0, 0};
 };

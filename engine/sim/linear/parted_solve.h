@@ -27,7 +27,7 @@ class PartedSolve {
   void begin(const CholeskyFactor& factor, const double* b);
   void begin_from_zero(const CholeskyFactor& factor, double magnitude);
 
-  // Computes the present x at the unknowns of a part.
+  // Computes x at the unknowns of a part, for b with all additions so far; seen() then returns it.
   void look(const FactorPart& part);
   Vec3 seen(int unknown) const;
 

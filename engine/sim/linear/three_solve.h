@@ -68,7 +68,7 @@ struct FrontSolve {
         x(unknowns),
         scratch(room) {}
 
-  // Returns the row of an unknown by its padded place in the front, below the pivots.
+  // Returns the row of an unknown by its place among those below the pivots.
   T* row_below(int place) const { return x + 4 * std::int64_t(rows[place]); }
 };
 
@@ -113,7 +113,7 @@ void block_to_rows(const T* block, int count, const Put& put) {
   }
 }
 
-// Subtracts so many blocks of a strip times `known` from the unknowns below its triangle.
+// Subtracts `together` blocks of a strip times `known` from the unknowns below its triangle.
 template <class T, int width, int together>
 void take_blocks(const T* numbers, const Row<T> (&known)[3][width], T* x) {
   for (int i = 0; i < block_rows; i += row_lanes<T>) {
@@ -167,7 +167,8 @@ void sums_of(const Row<T> (&rows)[width], T* sums) {
   }
 }
 
-// sums[c][j] = the unknowns below a strip times its columns from..., for `count` of its `width` columns.
+// Computes sums[c][j], the product of column j of a strip with coordinate c of the unknowns below the strip, for
+// `count` of its `width` columns, `from` first.
 template <class T, int width, int from, int count>
 void sum_columns(const T* numbers, int blocks, const T* x, T (&sums)[3][block_rows]) {
   Row<T> sum[3][count];
@@ -191,7 +192,8 @@ void sum_columns(const T* numbers, int blocks, const T* x, T (&sums)[3][block_ro
   }
 }
 
-// Takes the strip's columns times the unknowns below from its unknowns, and solves with its transposed triangle.
+// Subtracts the strip's columns times the unknowns below it from the strip's own unknowns, and solves with its
+// transposed triangle.
 template <class T, int width>
 void three_up(const T* inverse, int blocks, T* x) {
   const T* numbers = inverse + block_rows * width;

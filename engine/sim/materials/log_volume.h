@@ -1,8 +1,8 @@
-// Neo-Hookean and Mooney-Rivlin share this volume term: c(J) = -linear log J + lambda/2 log^2 J (Liu et al. 2017,
-// equation 14). Below J = 0.1 the whole of c continues as its second-order Taylor polynomial there: value, slope and
-// curvature are continuous, and with the stress written by the cofactor of F everything stays finite for flat and
-// inverted elements. States above 0.1 are unaffected. The function returns c(J) + linear (J - 1), which vanishes at
-// rest to second order and so keeps its digits there; the materials add the linear part to terms that cancel it
+// Defines the volume term that Neo-Hookean and Mooney-Rivlin share: c(J) = -linear log J + lambda/2 log^2 J (Liu et al.
+// 2017, equation 14). Below J = 0.1 the whole of c continues as its second-order Taylor polynomial about 0.1: value,
+// slope and curvature are continuous, and with the stress written by the cofactor of F everything stays finite for flat
+// and inverted elements. States above 0.1 are unaffected. beyond_linear() returns c(J) + linear (J - 1), which vanishes
+// at rest to second order and so keeps its digits there; the materials add the linear part to terms that cancel it
 // (near_rest.h).
 #pragma once
 

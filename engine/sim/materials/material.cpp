@@ -33,7 +33,8 @@ struct GaussLegendre {
   }
 };
 
-// The panels of the quadrature end at the seams of the stress, so that each panel is smooth.
+// Returns the ends of the quadrature's panels: the seams of the stress, so that each panel is smooth, and the
+// interval's end.
 std::vector<double> panel_ends(const Material& material, const StretchInterval& interval) {
   std::vector<double> ends = std::visit(
       [](const auto& m) -> std::vector<double> {

@@ -27,7 +27,7 @@ std::string_view name_of(const Material& material);
 // Tells whether some deformation has less energy than rest.
 bool energy_may_be_negative(const Material& material);
 
-// Tells whether a material has no stress in an interval around rest. Only inertia holds it there.
+// Tells whether a material has no stress in an interval around rest, where only inertia holds a body.
 bool has_slack(const Material& material);
 
 // Holds the stretch interval of equation 11.

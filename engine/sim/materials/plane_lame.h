@@ -10,8 +10,8 @@ namespace supple {
 struct PlaneLame {
   double mu, lambda;  // [N/m]
 
-  // Computes 2 mu lambda / (lambda + 2 mu) in the place of lambda, from which the strain of the thickness is
-  // eliminated. young [Pa], poisson: below 0.5, thickness [m].
+  // Returns the parameters of a sheet: in the place of lambda stands 2 mu lambda / (lambda + 2 mu), which eliminates
+  // the strain across the thickness. young [Pa], poisson: below 0.5, thickness [m].
   static PlaneLame from_young(double young, double poisson, double thickness) {
     return {thickness * young / (2 * (1 + poisson)), thickness * young * poisson / (1 - poisson * poisson)};
   }

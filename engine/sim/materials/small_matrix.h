@@ -1,6 +1,7 @@
-// 3 x 3 matrices whose entries may be SIMD registers (one element a lane) or plain doubles (the oracle in the tests).
-// The operations of a register are found by its type, so that only those who compute with registers include a SIMD
-// library. Free of Eigen, so that it can be compiled for several instruction sets in one program.
+// Defines 3 x 3 matrices whose entries may be SIMD registers (one matrix in each lane), plain doubles, or numbers with
+// derivatives (elements/dual.h). The operations of a register are found by its type, so that only those who compute
+// with registers include a SIMD library. This header is free of Eigen, so that it can be compiled for several
+// instruction sets in one program.
 #pragma once
 
 #include <cmath>
@@ -13,7 +14,7 @@ namespace supple {
 template <class V>
 constexpr bool is_single = requires { requires sizeof(typename V::value_type) == sizeof(float); };
 
-// Returns a b + c: fused for registers where the machine can do that, and plain for the oracle.
+// Returns a b + c: fused for registers where the machine can do that, and plain for doubles.
 inline double madd(double a, double b, double c) { return a * b + c; }
 template <class V>
 V madd(const V& a, const V& b, const V& c) {
@@ -91,8 +92,8 @@ V determinant(const Matrix3<V>& a, const Matrix3<V>& cofactors) {
   return madd(a(0, 0), cofactors(0, 0), madd(a(0, 1), cofactors(0, 1), a(0, 2) * cofactors(0, 2)));
 }
 
-// Returns a^T b where that is known to be symmetric (the stretch of a polar decomposition), as the average of its two
-// halves.
+// Returns a^T b where that is known to be symmetric (the stretch of a polar decomposition), as the mean of its entries
+// above and below the diagonal.
 template <class V>
 Symmetric3<V> symmetric_product(const Matrix3<V>& a, const Matrix3<V>& b) {
   const auto entry = [&](int i, int j) { return madd(a(0, i), b(0, j), madd(a(1, i), b(1, j), a(2, i) * b(2, j))); };

@@ -24,7 +24,7 @@ struct StableNeoHookean {
         Parameter<StableNeoHookean>{"lambda", "Pa", "of the volume ratio: Lame's lambda plus 5/8 mu; above mu/8",
                                     &StableNeoHookean::lambda, Sign::positive}};
   }
-  // Equation 16 of the same paper, which makes small strains those of Hooke's law.
+  // Follows equation 16 of the same paper, which makes small strains those of Hooke's law.
   static StableNeoHookean from(const Lame& lame) { return {4.0 / 3 * lame.mu, lame.lambda + 5.0 / 6 * lame.mu}; }
   // For a given J, uniform stretching has the least energy. Along it the slope is zero at rest alone where lambda is
   // above the largest value of 3 (3 s - 1) / (4 (3 s^2 + 1) (1 + s + s^2)) times mu, which is 0.1526.

@@ -1,16 +1,16 @@
 // Makes a sheet give way to compression. A thin sheet does not carry compression: it wrinkles, more finely than the
 // triangles of a mesh can show. Its relaxed energy (Pipkin 1986, "The relaxed energy density for isotropic elastic
 // membranes") has no stress across a wrinkled strip, which is as if the strip had its natural width, and none at all
-// where both directions are compressed. A sheet has a share `compression` of the plain energy, and of the relaxed one
-// what remains to 1.
+// where both directions are compressed. A sheet has the share c = `compression` of the plain energy, and 1 - c of the
+// relaxed one.
 #pragma once
 
 #include "sim/materials/small_matrix.h"
 
 namespace supple {
 
-// Returns the energy by area at the stretches s[0] >= s[1] and sets its derivatives [N/m]. M: has taut(s0, s1, slope),
-// natural_width(s0) and compression.
+// Returns the energy by area at the stretches s[0] >= s[1] and sets its derivatives [N/m]. M must have taut(s0, s1,
+// slope), natural_width(s0) and compression.
 template <class M, class V>
 V with_tension_field(const M& sheet, const V (&s)[2], V (&slope)[2]) {
   const V plain = sheet.taut(s[0], s[1], slope);

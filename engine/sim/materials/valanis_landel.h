@@ -12,9 +12,10 @@ struct NoTerm {
   static constexpr double slope_at_rest() { return 0; }
 };
 
-// a, b and c are NoTerm, or each offers slope_at_rest(), its slope at 1, and beyond_linear(x, slope): its value less
-// that at 1 and less slope_at_rest() (x - 1), and its slope. `slope` becomes dPsi/ds_i. The terms of first order cancel
-// at rest, so they are added as what remains of them in e_i = s_i - 1:
+// Returns the energy density at the stretches s; `slope` becomes dPsi/ds_i. b and c may be NoTerm; any other function
+// offers slope_at_rest(), its slope at 1, and beyond_linear(x, slope), which returns its value at x less that at 1 and
+// less slope_at_rest() (x - 1), and sets its slope at x. The terms of first order cancel at rest, so they are added as
+// what remains of them in e_i = s_i - 1:
 //   sum e_i (a' + 2 b' + c') + sum e_i e_j (b' + c') + e_1 e_2 e_3 c'.
 template <class V, class A, class B, class C>
 V valanis_landel(const A& a, const B& b, const C& c, const V (&s)[3], V (&slope)[3]) {

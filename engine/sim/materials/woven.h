@@ -16,7 +16,7 @@ namespace supple {
 struct Woven {
   static constexpr std::string_view name = "woven";
   static constexpr bool isotropic = false;
-  static constexpr double lock = 20;  // of threads beyond their limit, over their stiffness
+  static constexpr double lock = 20;  // what a thread's stiffness gains beyond its limit, over this stiffness
   double warp = 0, weft = 0;          // [N/m]
   double shear = 0;                   // [N/m]
   double compression = 0.05;          // share of a thread's stiffness that is left below its rest length

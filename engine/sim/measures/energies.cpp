@@ -30,10 +30,10 @@ double spring_energy(const Model& model, const Positions& targets, const Positio
   return sum;
 }
 
-// Returns the work of seams that close from some gaps to others in a step from q to x [J]. By the forces where the step
-// ends it is exact for steps that are solved. Others leave the seams with other forces than those that moved the cloth:
-// then what the body gained is their work, up to the energy by which the seams are stretched when their gaps shrink at
-// q. gained: by the body in the step, without the work of all else.
+// Returns the work of seams whose gaps close from `before` to `gaps` in a step from q to x [J]. In a step that is
+// solved, this is the work by the forces at x. In other steps, those are not the forces that moved the cloth: there the
+// work is what the body gained, if that is more, up to the energy by which the seams are stretched when their gaps
+// shrink at q. gained: by the body in the step, without the work of all else.
 double work_of_closing(const Model& model, const Positions& before, const Positions& gaps, const Positions& q,
                        const Positions& x, double gained) {
   double work = 0, most = 0;
@@ -48,10 +48,10 @@ double work_of_closing(const Model& model, const Positions& before, const Positi
 }
 
 // Returns the work over a step from q to x of a contact with another body, or of a body with itself, on the free
-// vertices of its stencil [J]. force: on the stencil's point. What pushes the point out gives energy. What stops it
-// takes no more than the other side receives, which moves away by less: the rest is lost in the impact. Without this, a
-// step that was left with a large force, at a contact that is stiff, would count as one that took far more than the
-// body ever had.
+// vertices of the contact's stencil [J]. force: on the stencil's point [N]. A force that pushes the point out gives
+// energy. A force that stops the point takes no more than the other side receives, which moves away by less: the rest
+// is lost in the impact. Otherwise a step that is left with a large force at a stiff contact would count as one that
+// took far more than the body ever had.
 double work_between_bodies(const Contact& contact, const Vec3& force, const Positions& q, const Positions& x) {
   const Vec3 way = contact.stencil.of_free(x) - contact.stencil.of_free(q);
   const double pressing = force.dot(contact.normal);
@@ -167,7 +167,8 @@ void EnergyBudget::after_step(const Model& model, const StepInputs& inputs, cons
   if (w.air.act()) add_to_budget(w.air.work(model, state.x));
   count_bounces(state);
   set_motion(model, state, inputs.gravity, parts_);
-  // Backward Euler has evaluated the elements where the step ends; the step of an island, not those of each body.
+  // A body's own step of backward Euler has evaluated the elements where it ends. The step of an island has not done so
+  // for each body, and leaves a number that is not finite.
   const bool is_known = model.scheme.theta == 1 && std::isfinite(w.current.elastic);
   parts_.elastic = is_known ? w.current.elastic + bending_energy(model, state.x) : elastic_energy(model, w, state.x);
   parts_.springs = spring_energy(model, inputs.targets, state.x) + seam_energy(model, seam_gaps_, state.x);

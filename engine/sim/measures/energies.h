@@ -14,7 +14,7 @@ struct Energies {
   double kinetic = 0, elastic = 0, gravitational = 0;  // the last one against the rest shape [J]
   double springs = 0;                                  // energy of the springs of soft handles, and of seams [J]
   double gas = 0;                                      // energy of gas in closed surfaces, against the rest shape [J]
-  double contact = 0;                                  // energy of overlaps with colliders; not in the total [J]
+  double contact = 0;                                  // energy of all contacts' normal forces; not in the total [J]
   double total() const { return kinetic + elastic + gravitational + springs + gas; }
 };
 // Returns the energies without those of soft handles, seams, gas and contact, which stay 0. Evaluates all elements; the
@@ -24,14 +24,14 @@ Energies energies(const Model& model, const State& state, const Vec3& gravity, O
 // Holds what a body has, and what it was given, since its film began [J].
 struct EnergyBalance {
   double total = 0;
-  // By handles, seams that close, contact, restitution, air and changed values; negative where more was taken.
+  // What handles, seams that close, contact, restitution, air and changed values gave; negative where they took more.
   double put_in = 0;
   double from_nothing = 0;  // how far total - put_in is above its lowest value so far
   double held = 0;          // the largest sum of kinetic, elastic, springs' and gas' energy so far
   double worked = 0;        // all that was put in and all that was taken, each as positive
   double flowed = 0;        // elastic energy that was lost to flow (model/flow.h); it is missing in `total`
 
-  // Returns what the other values are compared with.
+  // Returns what from_nothing is compared with.
   double exchanged() const { return held + worked; }
 };
 
@@ -39,7 +39,7 @@ struct EnergyBalance {
 // the body from outside may give any.
 class EnergyBudget {
  public:
-  // Begins with a state, before the next frame changes anything. inputs: of which gravity and gas are read. balance:
+  // Begins with a state, before the next frame changes anything. Of the inputs, only gravity and gas are read. balance:
   // the balance at this state.
   void start(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& workspace,
              const EnergyBalance& balance = {});
@@ -48,7 +48,7 @@ class EnergyBudget {
   void know_springs(const Model& model, const Positions& targets, const std::vector<SeamOpening>& seams,
                     const State& state);
   bool knows_springs() const { return knows_springs_; }
-  // Counts the energy of changes since the last step. To be called when the inputs of the next step are there.
+  // Counts the energy of changes since the last step. Must be called when the inputs of the next step are there.
   void before_step(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& workspace);
   // Counts a step that succeeded. The workspace must be as the step left it. q: the positions before the step.
   void after_step(const Model& model, const StepInputs& inputs, const Positions& q, const State& state,

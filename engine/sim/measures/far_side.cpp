@@ -52,7 +52,8 @@ class Plate {
     return std::nullopt;
   }
 
-  // Tries places around the one inside, in the directions of a cube's faces, edges and corners.
+  // Tells whether some place around the one inside is reached freely from both ends. Places are tried in the directions
+  // of a cube's faces, edges and corners.
   bool leads_around(const Vec3& from, const Vec3& to, const Vec3& inside, double length) {
     for (const double share : {0.25, 0.5, 1.0}) {
       for (int i = 0; i < 27; ++i) {

@@ -14,8 +14,9 @@ namespace supple {
 inline constexpr double thin_half_thickness = 0.01;
 
 // Returns how far the parts of the surface that a thin collider cuts off reach out of the collider on the far side; 0
-// where there are no such parts, and where the collider is thick or its thickness is not known [m]. The largest part
-// that hangs together is on the near side. pose: the pose of the collider. x: n x 3 in the model's order.
+// where there are no such parts, and where the collider is thick or its thickness is not known [m]. Of two parts that a
+// cut edge would join, the smaller one is on the far side. pose: the pose of the collider. x: n x 3 in the model's
+// order.
 double reach_on_far_side(const Model& model, const Collider& collider, const Eigen::Isometry3d& pose,
                          const Positions& x);
 

@@ -21,8 +21,8 @@ double von_mises(const Mat3& f, const Mat3& piola) {
 
 namespace {
 
-// Adds the fields of one material's elements, one by one. kirchhoff: by element, takes P F^T of elements that have a
-// Maxwell arm, together with that of the arm [Pa].
+// Adds the fields of one material's elements, one by one. kirchhoff: by element, the sum of P F^T over the element and
+// its Maxwell arm, by their shares; only used where the model creeps [Pa].
 template <class M>
 void add_tetrahedra(const Model& model, const Model::ChunkRange& range, const M& material, const Fibre* fibre,
                     const Positions& x, ElementFields& fields, std::vector<Mat3>& kirchhoff) {

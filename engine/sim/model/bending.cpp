@@ -13,7 +13,7 @@
 namespace supple {
 namespace {
 
-// Describes a triangle as one of its edges sees it.
+// Describes a triangle relative to one of its edges.
 struct Flap {
   int triangle;  // its number
   std::int32_t tip;
@@ -34,9 +34,9 @@ Eigen::Vector2d corner_of(const FlatTriangle& triangle, int corner) {
   return {triangle.edges[corner - 1], triangle.edges[2 + corner - 1]};
 }
 
-// Returns the part of a triangle that is nearest to a corner; of a triangle with an obtuse angle half at that angle and
-// a quarter at the others (Meyer, Desbrun, Schroeder, Barr 2003, "Discrete differential-geometry operators for
-// triangulated 2-manifolds", section 3.3) [m^2].
+// Returns the area of the part of a triangle that is nearest to a corner; in a triangle with an obtuse angle, half of
+// its area at that angle and a quarter at the others (Meyer, Desbrun, Schroeder, Barr 2003, "Discrete
+// differential-geometry operators for triangulated 2-manifolds", section 3.3) [m^2].
 double area_of_corner(const FlatTriangle& triangle, int corner) {
   const auto angle_at = [&](int k) {  // its cosine times both sides
     const Eigen::Vector2d p = corner_of(triangle, k);
@@ -50,7 +50,7 @@ double area_of_corner(const FlatTriangle& triangle, int corner) {
   return (side(corner, next) * angle_at(last) + side(corner, last) * angle_at(next)) / (16 * area);
 }
 
-// Describes a triangle as its edge from corner `edge` to the next one sees it. number: the triangle's.
+// Describes a triangle relative to its edge from corner `edge` to the next one. number: the triangle's.
 Flap flap_of(const std::vector<FlatTriangle>& triangles, int number, int edge) {
   const FlatTriangle& triangle = triangles[std::size_t(number)];
   int from = edge, to = (edge + 1) % 3;
@@ -138,7 +138,7 @@ class Squares {
   }
 
  private:
-  // An area of 0 tells that a vertex is on a border, or where more than two triangles share an edge.
+  // Tells whether a vertex has an area. It has none on a border, and where more than two triangles share an edge.
   bool is_inside(std::int32_t v) const { return area_.at(v) > 0; }
 
   void add_to_laplacian(std::int32_t vertex, std::int32_t neighbour, const std::vector<Flap>& flaps,
@@ -198,8 +198,8 @@ std::optional<Patch> patch_of(const FlatTriangle& triangle, int number, const Fl
 
 using SecondDerivatives = Eigen::Matrix<double, 3, 6>;  // xx, xy and yy of a function by its values in a patch [1/m^2]
 
-// Differentiates the quadratic function that has given values in a patch. Returns nothing where such functions are
-// nearly undetermined, because the places are close to a conic: then they would answer to noise.
+// Differentiates the quadratic function that has given values in a patch. Returns nothing where the places are close to
+// a conic: such a function is nearly undetermined, and its derivatives would follow noise.
 std::optional<SecondDerivatives> second_derivatives(const Patch& patch, double area) {
   constexpr double largest = 20;  // of the sum of factors times the area; right triangles of a grid have 2
   const double size = std::sqrt(area);
@@ -215,8 +215,8 @@ std::optional<SecondDerivatives> second_derivatives(const Patch& patch, double a
   return SecondDerivatives(found / area);
 }
 
-// Finds the squares of cloth that is curved at rest: half of those of flat cloth, with the deviator of each triangle
-// that has three neighbours. The area of the other triangles counts at their hinges.
+// Finds the squares of cloth that is curved at rest: those of flat cloth with half of their weight, and the deviator of
+// each triangle that has three neighbours. The area of the other triangles counts at their hinges.
 class CurvedSquares {
  public:
   explicit CurvedSquares(const std::vector<FlatTriangle>& triangles)
@@ -254,7 +254,7 @@ class CurvedSquares {
     SecondDerivatives second;
   };
 
-  // The squared norm of the deviator of S is (S_xx - S_yy)^2 / 2 + 2 S_xy^2.
+  // Visits both squares of a deviator: the squared norm of the deviator of S is (S_xx - S_yy)^2 / 2 + 2 S_xy^2.
   template <class Visit>
   void visit_deviator(int t, const Visit& visit) const {
     const auto& [patch, second] = *deviators_[std::size_t(t)];

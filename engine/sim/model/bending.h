@@ -25,7 +25,8 @@ std::vector<JoinedVertices> joined_by_cloth(const BodyDescription& body);
 // Returns Q over all vertices in the model's numbering, both triangles of it, for a bending stiffness of 1 N m [1/m^2].
 Eigen::SparseMatrix<double> bending_matrix(const Model& model, const BodyDescription& body);
 
-// Returns the energy of a curved cloth whose shape at rest is model.rest, for a bending stiffness of 1 N m.
+// Returns the energy of a curved cloth whose shape at rest is model.rest, for a bending stiffness of 1 N m, without
+// what RestCurvature::index() makes.
 RestCurvature rest_curvature(const Model& model, const BodyDescription& body);
 
 // Computes row v of Q z, from differences, so that it does not depend on where the cloth is [N].
@@ -42,7 +43,7 @@ inline void bending_row(const Model::SparseRows& bending, const double* z, int v
   for (int c = 0; c < 3; ++c) row[c] = sum[c];
 }
 
-// Returns the diagonal entry of row v of Q, which takes what the others sum up to [N/m].
+// Returns the diagonal entry of row v of Q, which is minus the sum of the others [N/m].
 inline double bending_diagonal(const Model::SparseRows& bending, int v) {
   double sum = 0;
   for (std::int32_t k = bending.begin[v]; k < bending.begin[v + 1]; ++k) sum -= bending.value[k];

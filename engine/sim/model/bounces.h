@@ -22,7 +22,7 @@ struct Bounce {
   double sunk = 0;                        // how far the two went on together since they touched [m]
   bool is_leaving = false;                // the two no longer come together
   double target = 0;                      // how fast they shall go apart, once they leave [m/s]
-  double ahead = 0;                       // what elasticity gave while they leave, and is not used up [m/s]
+  double ahead = 0;                       // speed that elasticity gave while they leave, and that was not due yet [m/s]
   // Until they leave: how much each step took of their approach. From then on: how much the steps to come shall give
   // them, the next one last [m/s].
   std::vector<double> shares = {};

@@ -56,7 +56,8 @@ void element_matrices(const Model& model, Threads* threads, const Positions& x, 
 namespace {
 
 // Returns the pairs of free vertices that share a block of the lower triangle: a vertex with itself, and vertices that
-// an element, a bend, a seam or a triangle of the surface joins. Sorted by the first, which is the smaller one.
+// an element, a bend, a seam or a triangle of the surface joins. Pairs are sorted by their first vertex, the smaller
+// one.
 std::vector<std::pair<std::int32_t, std::int32_t>> coupled_vertices(const Model& model) {
   std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
   const auto add = [&](std::int32_t column, std::int32_t row) {

@@ -15,8 +15,8 @@ struct ElementMatrices {
   std::vector<std::size_t> first;  // by chunk
 };
 
-// Finds the second derivatives of the elements' energies at x, or the nearest positive semi-definite ones [N/m].
-// threads: may be null.
+// Finds the second derivatives of the elements' energies at x or, where `project`, positive semi-definite ones near
+// them [N/m]. threads: may be null.
 void element_matrices(const Model& model, Threads* threads, const Positions& x, bool project, ElementMatrices& out);
 
 class ElasticHessian {
@@ -26,13 +26,15 @@ class ElasticHessian {
   // Returns the lower triangle, whose row 3 i + c belongs to coordinate c of vertex i.
   const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }
 
-  // Sums up w M/h^2, the springs of handles, damping and the element matrices as given.
+  // Sums up w M/h^2, damping, and e theta^2 times the springs of handles, bending, seams and the element matrices as
+  // given.
   void assemble(const Model& model, const ElementMatrices& elements);
 
-  // Adds to the 3 x 3 block of two free vertices that an element or a triangle of the surface joins; row >= column.
+  // Adds to the 3 x 3 block of two free vertices, which an element, a bend, a seam or a triangle of the surface must
+  // join; row >= column.
   void add(std::int32_t row, std::int32_t column, const Mat3& part);
 
-  // result = H v, both of 3 n_free numbers.
+  // Computes result = H v, both of 3 n_free numbers.
   void multiply(const double* v, double* result) const;
 
   // Adds an amount to the diagonal [N/m].
@@ -49,11 +51,11 @@ class ElasticHessian {
   Eigen::SparseMatrix<double> matrix_;
   std::vector<std::int32_t> block_begin_, block_row_;  // by block column
   struct Place {
-    std::int32_t row, column;  // corners of the element; row >= column in the matrix after `swapped`
+    std::int32_t row, column;  // corners of the element, exchanged where `swapped`: then row >= column in the matrix
     std::int64_t at;           // place of the block's first number; -1: a corner is held
     bool swapped;
   };
-  std::vector<Place> places_;             // pairs of corners of each lane, in the order of pairs
+  std::vector<Place> places_;             // by lane and pair of corners
   std::vector<std::size_t> first_place_;  // by chunk
 };
 

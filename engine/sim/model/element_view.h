@@ -10,7 +10,7 @@ namespace supple {
 
 // Describes one element, whose corners have the model's numbering.
 struct ElementView : ElementRecord {
-  int lane;  // over all blocks
+  int lane;  // number of its lane among those of all blocks
 };
 
 // Calls visit(ElementView) for each element of a chunk in the order of lanes; padding is left out.

@@ -15,7 +15,7 @@ namespace supple {
 // flow.
 struct Flow {
   std::vector<double> plastic;   // F_p, nine entries by rows
-  std::vector<double> hardened;  // plastic strain that has added up: von Mises' equivalent of each step's
+  std::vector<double> hardened;  // plastic strain that has added up: the sum of von Mises' equivalents by step
   std::vector<double> viscous;   // F_v of the Maxwell arm, nine entries by rows
   double until = 0;              // the time up to which the body has flowed [s]
   double lost = 0;               // elastic energy that flow has taken since the start [J]

@@ -12,11 +12,11 @@ namespace supple {
 // Returns the flow of a body that is at rest where it was built; empty where its model does not flow.
 Flow rest_flow(const Model& model);
 
-// Gives what has flowed in a state to a body's model, whose elements then are strained by F_e. Must be called where a
-// model is used for a state that is not its last one. Does nothing where the model does not flow.
+// Gives what has flowed in a state to a body's model, whose elements then are strained by F_e. Must be called before a
+// model is used for a state other than the one it was last used for. Does nothing where the model does not flow.
 void show_flow(const Flow& flow, Model& model);
 
-// Does the same for a model that bodies were joined to; they must have theirs already.
+// Does the same for a model into which bodies are joined; the bodies' own models must have their flow already.
 void show_flow(const std::vector<const Model*>& bodies, Model& joined);
 
 // Lets a body flow for the time since it last did, and gives the result to its model, which must have the state's flow.

@@ -24,7 +24,7 @@ namespace supple {
 // Describes an obstacle, in its own frame.
 struct Collider {
   std::string name;
-  Shape shape;           // of one that deforms: where the step ends
+  Shape shape;           // of a collider that deforms: its shape where the step ends
   double thickness = 0;  // of the layer around the collider that already pushes [m]
   double friction = 0;   // coefficient of Coulomb's law
 };
@@ -42,7 +42,7 @@ struct ColliderMotion {
 
 // Selects how search directions take contacts, which A does not contain, into account.
 enum class ContactDirection {
-  diagonal,  // normal motion of touching vertices by its own stiffness
+  diagonal,  // each stiff direction of a contact by itself
   low_rank,  // (A + contacts)^-1 by the Woodbury identity
 };
 template <>
@@ -79,7 +79,7 @@ struct Names<LineSearch> {
 // Holds the settings of Chebyshev's semi-iterative acceleration (Wang 2015). docs/bench.md tells how the defaults were
 // found.
 struct ChebyshevSettings {
-  int delay = 1;         // S: the first iterations that are not accelerated
+  int delay = 1;         // S: how many iterations at the start are not accelerated
   double radius = 0.85;  // rho: the spectral radius that is assumed of the plain iteration
 };
 
@@ -91,7 +91,7 @@ struct SolverSettings {
   StartMatrix matrix = StartMatrix::system;  // of quasi-Newton directions: one of quasi_newton_matrices
   LineSearch line_search = LineSearch::armijo;
   double armijo = 0.3;      // gamma
-  double target_error = 0;  // stop when the error estimate falls below; 0: do all iterations
+  double target_error = 0;  // stop when the estimates of both errors are below this; 0: do all iterations
   double still = 0;         // stop when less than this is left to go [body sizes]; 0, or levels = 1: do all iterations
   // Single: elements may be evaluated in single precision while that is enough (solver/element_precision.h).
   Precision elements = Precision::single_precision;
@@ -117,9 +117,10 @@ struct StepInputs {
   Positions targets;                 // at the end of the step, by Model::handled [m]
   Positions middle_targets;          // at its middle; only for implicit midpoint [m]
   SolverSettings solver;
-  const std::vector<Collider>* colliders = nullptr;   // null or empty: nothing to touch, and nothing is paid for it
+  const std::vector<Collider>* colliders = nullptr;   // null or empty: there are none, and nothing is paid for them
   std::vector<ColliderMotion> collider_motions = {};  // motion of each collider over the step
-  // What parts of the model touch each other, ordered by surface; empty: none do, and nothing is paid for it.
+  // Which parts of the model may touch each other or themselves, ordered by surface; empty: none, and nothing is paid
+  // for it.
   std::vector<Meeting> meetings = {};
   std::optional<BudgetCuts> repeated_cuts = {};  // cuts of an earlier run, in place of the clock, for the same bits
   Wind wind = {};

@@ -11,17 +11,17 @@
 namespace supple {
 
 // Returns the model of several bodies. Its free vertices are those of the first body, then of the second, and so on;
-// then come the held ones in the same order. Its input file, as far as vertices are numbered, is that of the first body
-// with those of the others behind it, and so are its handles and regions. The bodies must have one time step,
-// integrator and precision. What has flowed in them comes with show_flow() (flow_step.h).
+// then come the held ones in the same order. Vertices of the input file, handles and regions are numbered as if the
+// bodies' own followed one another in one file. The bodies must have one time step, integrator and precision. What has
+// flowed in them comes with show_flow() (flow_step.h).
 Model join(const std::vector<const Model*>& bodies);
 
-// Returns the vertex of a joined model that is a vertex of one of its bodies.
+// Returns the number that a vertex of a body has in the joined model. part: that of the body.
 inline std::int32_t joined_vertex(const Part& part, std::int32_t vertex) {
   return vertex < part.free ? part.first_free + vertex : part.first_held + (vertex - part.free);
 }
 
-// Returns the vertex of a body that is a vertex of the joined model, which must belong to the part.
+// Returns the number that a vertex of the joined model has in its body's own model. part: that of the body.
 inline std::int32_t own_vertex(const Model& joined, const Part& part, std::int32_t vertex) {
   return vertex < joined.free ? vertex - part.first_free : vertex - part.first_held + part.free;
 }

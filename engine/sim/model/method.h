@@ -195,7 +195,8 @@ inline constexpr auto method_forms = [] {
   });
 }();
 
-// Returns null when systems with the matrix cannot be solved in this way.
+// Returns the parts that can be combined with a matrix and a linear solver; null when systems with the matrix cannot be
+// solved in this way.
 constexpr const MethodForm* form_of(StartMatrix matrix, LinearSolver linear) {
   for (const MethodForm& form : method_forms) {
     if (form.matrix == matrix && form.linear == linear) return &form;

@@ -1,9 +1,9 @@
 // Describes a body, or several whose steps are made together, as the solver needs it: elements in SIMD blocks, masses,
 // handles and the factor of A = M/h^2 + L (Liu et al. 2017, section 3.3). No step changes it; between steps,
-// ModelValues may set its numbers again (for replays, and handles that release). Not here: where the body is (State),
-// what drives it (StepInputs). Vertices are renumbered: free ones come first, in the factor's order of elimination (so
-// that solves permute nothing), then those that hard handles hold. Elements are sorted by material and by their first
-// vertex.
+// ModelValues may set its numbers again (for replays, and handles that release), and let_flow() the shapes that
+// elements keep. Not here: where the body is (State), what drives it (StepInputs). Vertices are renumbered: free ones
+// come first, in the factor's order of elimination (so that solves permute nothing), then those that hard handles hold.
+// Elements are sorted by material and by their first vertex.
 #pragma once
 
 #include <cstdint>
@@ -57,8 +57,8 @@ struct BodyDescription {
   // How far what is drawn reaches beyond this surface, by vertex; contact with other bodies begins there. Empty:
   // nowhere [m]
   std::vector<double> overhang;
-  // By vertex, the way from it at rest to the place of what is drawn that touches colliders in its stead, n x 3. Empty:
-  // vertices touch colliders themselves [m]
+  // The places of the drawn skin that touch colliders in the stead of vertices: by vertex, the way at rest from the
+  // vertex to its place, n x 3; 0 where the vertex touches colliders itself. Empty: all vertices do [m]
   Positions drawn_offset;
   std::optional<Plasticity> plastic;  // of the tetrahedra; nothing: they keep no dent
   std::optional<Creep> creep;         // of the tetrahedra; nothing: they do not creep
@@ -91,14 +91,14 @@ struct Part {
   double drag = 0;      // beta/h
 };
 
-// Holds the places of what is drawn that touch colliders in the stead of some vertices. Each moves along with its
-// vertex, and its offset from the vertex turns and stretches with the elements there.
+// Holds the places of the drawn skin that touch colliders in the stead of some vertices. Each place moves along with
+// its vertex, and its offset from the vertex turns and stretches with the elements there.
 struct DrawnPlaces {
   VertexFrames frames;  // those of the vertices
   Positions offset;     // by frame, at rest [m]
 };
 
-// As a System it is A = w M/h^2 + (e theta^2 + beta/h) L + springs of handles.
+// As a System, a model is A = w M/h^2 + (e theta^2 + beta/h) L + e theta^2 K, with K the springs of handles.
 struct Model : System {
   std::uint64_t structure = 0;  // names the description that the model was built from; new values keep it
   std::string name;             // of the body
@@ -121,14 +121,15 @@ struct Model : System {
   bool energy_may_be_negative = false;
   bool has_slack = false;     // some material has none of its stiffness around rest
   double mean_stiffness = 0;  // trace of L over the number of elements [N/m]
-  // The sum of k V over the tetrahedra and of k r^2 over the springs: the work of the stress k, or of the force k r, on
-  // a strain of 1 [J].
+  // The sum of k V over the tetrahedra, with kappa where they have fibres, of the larger k times the area over the
+  // triangles, and of k r^2 over the springs: the work of the stress k, or of the force k r, on a strain of 1 [J].
   double strain_stiffness = 0;
 
   std::vector<Material> materials;         // by region
   std::vector<Fibre> fibres;               // by region; empty: none
   std::vector<SystemStiffness> stiffness;  // k by region
-  // These two have one entry for each body of triangles; the region of their chunks is its number.
+  // These two lists have one entry for each body of triangles; the region of a chunk of triangles is the number of its
+  // entry.
   std::vector<Fabric> fabrics;
   std::vector<MembraneStiffness> fabric_stiffness;  // what stands for the fabrics in L
 
@@ -197,8 +198,8 @@ struct Model : System {
 // Throws InputError: the handle holds a vertex that another one holds.
 [[noreturn]] void refuse_second_handle(const BodyDescription& body, const Handle& handle);
 
-// Throws RunError (with the body's name) when A cannot be factored, and InputError when the description contradicts
-// itself.
+// Returns the model of a body. Throws RunError (with the body's name) when A cannot be factored, and InputError when
+// the description contradicts itself.
 Model build_model(const BodyDescription& description);
 
 }  // namespace supple

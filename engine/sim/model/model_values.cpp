@@ -81,7 +81,7 @@ void set_arm_shares(Model& model, const TetMesh& mesh) {
   }
 }
 
-// Writes the stiffness of springs into the packed fields.
+// Writes the lengths at rest and the stiffness of springs into the packed fields.
 void set_spring_fields(Model& model, const std::vector<Spring>& springs) {
   for (const Model::ChunkRange& chunk : model.chunks) {
     if (chunk.kind != ElementKind::spring) continue;
@@ -135,7 +135,8 @@ std::size_t pairs_of(const ElementRecord& element) {
   return static_cast<std::size_t>(corners_of(element.kind)) * static_cast<std::size_t>(corners_of(element.kind));
 }
 
-// Adds weight G^T G to the values at their places, corner by corner.
+// Adds weight G^T G, corner by corner, to the values at their places; place: null where the values are those of the
+// element alone.
 void add_term(const SystemTerm& term, int corners, const std::int32_t* place, double* values) {
   for (int a = 0; a < corners; ++a) {
     for (int b = 0; b < corners; ++b) {
@@ -186,7 +187,7 @@ ModelValues::ModelValues(const Model& model, const BodyDescription& body) : elem
   }
 }
 
-// Sums up L = sum_e V_e k_e G_e^T G_e (equation 8 of the paper with its k).
+// Sums up L = sum_e V_e k_e G_e^T G_e (equation 8 of the paper with its k), with fibres, bending and seams.
 void ModelValues::add_up_elastic(Model& model) {
   double* values = elastic_.valuePtr();
   std::fill(values, values + elastic_.nonZeros(), 0.0);

@@ -8,7 +8,8 @@
 
 namespace supple {
 
-// These return names that no structure and no values of a model have had yet (Model::structure, System::id).
+// These functions return numbers that no structure and no values of a model have had yet (Model::structure,
+// System::id).
 std::uint64_t new_structure();
 std::uint64_t new_values();
 
@@ -21,9 +22,10 @@ class ModelValues {
   const std::vector<ElementRecord>& elements() const { return elements_; }
 
   // Sets all that follows from the present description; numbering and packing stay. What has flowed is forgotten until
-  // show_flow() gives it to the model again. Whether the body creeps, the mesh, the ends of springs, and
-  // the vertices and hardness of handles must be those of the description from which the model was built. Throws
-  // RunError when A cannot be factored; the model must then not be used for steps.
+  // show_flow() gives it to the model again. The mesh, the ends of springs, the triangles and seams of cloth, the
+  // vertices and hardness of handles, whether the body creeps, and whether cloth is curved or bends at all, must be as
+  // in the description from which the model was built. Throws RunError when A cannot be factored; the model must then
+  // not be used for steps.
   void set(Model& model, const BodyDescription& body);
 
  private:

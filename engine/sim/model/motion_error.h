@@ -22,12 +22,12 @@ std::vector<double> motion_errors(const Model& model, const Positions& q, const 
 // from x, and the step's own motion to be that to x.
 double estimated_motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,
                               const Positions& d, double times);
-// Returns that of each of the model's parts.
+// Returns the estimate of the error of motion of each of the model's parts.
 std::vector<double> estimated_motion_errors(const Model& model, const Positions& q, const Positions& y,
                                             const Positions& x, const Positions& d, double times);
 
-// Returns the length of the way d (n_free x 3 [m]): the root of the mean of |d|^2 by mass, over the size of the part. It
-// is the largest of the parts' [body sizes].
+// Returns the length of the way d (n_free x 3 [m]) in body sizes, the largest of the model's parts: of each, it is the
+// root of the mean of |d|^2 by mass, over the part's size.
 double way_in_sizes(const Model& model, const Positions& d);
 
 }  // namespace supple

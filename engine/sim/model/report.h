@@ -78,7 +78,7 @@ struct StepReport {
 };
 
 // Tells whether a step did not come near its minimum. Where Newton's method finished it, or nothing is left to go, the
-// estimate alone counts: line searches that tried many points only tell that the iterations before were hard.
+// estimates alone count: line searches that tried many points only tell that the iterations before were hard.
 inline bool is_unsolved(const StepReport& report) {
   const bool is_certain = report.newton_iterations > 0 || report.stop_reason == StopReason::still;
   return is_unsolved(std::max(report.error_estimate, report.motion_estimate), report.iterations,

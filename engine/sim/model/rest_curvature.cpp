@@ -17,8 +17,9 @@ void set_vector(std::vector<double>& list, std::size_t i, const Vec3& v) {
   for (int c = 0; c < 3; ++c) list[3 * i + c] = v[c];
 }
 
-// Returns the factor that makes a vector a unit vector, and its derivative by length over length. Below a tenth of the
-// length at rest the factor is a polynomial in the squared length that has the same value and two derivatives there.
+// Returns the factor that makes a vector a unit vector, and the factor's derivative by the vector's length, over this
+// length. squared: the squared length. Below a tenth of the length at rest the factor is a polynomial in the squared
+// length that has the same value and two derivatives there.
 std::array<double, 2> unit_factor(double squared, double at_rest) {
   const double least = 0.1 * at_rest, ratio = squared / (least * least);
   if (ratio >= 1) {
@@ -29,7 +30,7 @@ std::array<double, 2> unit_factor(double squared, double at_rest) {
           (-20.0 / 8 + 12.0 / 8 * ratio) / (least * least * least)};
 }
 
-// Sums up from differences, so that the result does not depend on where the cloth is.
+// Sets d_s of a square, summed up from differences, so that the result does not depend on where the cloth is.
 void set_square(const RestCurvature& curvature, const double* x, int s, std::vector<double>& square) {
   const std::int32_t begin = curvature.first_term[s], end = curvature.first_term[s + 1];
   const double* first = x + 3 * std::size_t(curvature.terms[begin].vertex);

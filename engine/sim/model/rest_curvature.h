@@ -29,11 +29,11 @@ struct RestCurvature {
   };
   struct Triangle {
     std::array<std::int32_t, 3> corner;
-    double edge, twice_area;  // length from corner 0 to corner 1 [m], and of the cross product, at rest [m^2]
+    double edge, twice_area;  // at rest: the length from corner 0 to corner 1 [m], and twice the area [m^2]
     std::int32_t first_turn = 0, turns = 0;
   };
 
-  std::vector<std::int32_t> first_term;  // of each square, and the number of all
+  std::vector<std::int32_t> first_term;  // by square: where its terms begin; then the number of all terms
   std::vector<Term> terms;
   std::vector<Triangle> triangles;
   std::vector<Turn> turns;  // by triangle
@@ -56,14 +56,15 @@ struct RestCurvature {
   void index(int vertices);
 };
 
-// Holds what an evaluation finds; memory within one call.
+// Holds what an evaluation finds, for curvature_slope().
 struct CurvatureRoom {
   std::vector<double> square;  // d_s [sqrt(J)], then dE/dd_s by square, 3 numbers each
   std::vector<double> turned;  // share (d_s - R_t c) by turn, 3 numbers each
   std::vector<double> corner;  // dE/dx through the axes, by triangle and corner, 3 numbers each [N]
 };
 
-// Evaluates at x, 3 numbers by vertex [m]. energy: by triangle [J].
+// Evaluates the energy at x, 3 numbers by vertex [m], and keeps in `room` what curvature_slope() needs. energy: by
+// triangle [J].
 void evaluate_curvature(const RestCurvature& curvature, Threads* threads, const double* x, CurvatureRoom& room,
                         std::vector<double>& energy);
 

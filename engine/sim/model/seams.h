@@ -57,11 +57,11 @@ struct Seams {
     if (empty()) return {};
     return {shares.data() + begin[vertex], std::size_t(begin[vertex + 1] - begin[vertex])};
   }
-  // Lists the shares of each vertex; to be called once the pairs are there.
+  // Lists the shares of each vertex. Must be called once the pairs are there.
   void index(int vertices);
 };
 
-// Says how much of their gaps at the start is left in the seams of a part.
+// Says which share of the gaps at the start is left in the seams of a part.
 struct SeamOpening {
   double end = 1, middle = 1;  // s at the end of a step and at its middle
 };
@@ -73,14 +73,14 @@ double seam_opening(double time, double seam_time);
 void open_gaps(const Model& model, const std::vector<SeamOpening>& openings, double SeamOpening::*when,
                Positions& gaps);
 
-// Tells how the energy of seams changes, and how it changes along a direction [J].
+// Holds e times the energy of seams, or its difference from that at a reference, and its slope along a direction [J].
 struct SeamChange {
   double value = 0, slope = 0;
 };
 
-// Adds the forces of seams at `place` to the gradient (n_free x 3; null: only the value is wanted). Returns e times
-// their energy, or its difference from that at a reference (null: none), and the slope along the direction (n_free x
-// 3).
+// Adds the gradient of the seams' energy at `place` to `gradient` (n_free x 3; null: only the value is wanted). Returns
+// e times the energy, or its difference from that at a reference (null: none), and the slope along the direction
+// (n_free x 3).
 SeamChange add_seams(const Model& model, const Positions& gaps, const double* place, const double* reference,
                      const Positions& direction, Positions* gradient);
 
@@ -90,13 +90,13 @@ double seam_energy(const Model& model, const Positions& gaps, const Positions& x
 // Returns the work of the seams' forces at x on held vertices along their ways from q [J].
 double seam_work_on_held(const Model& model, const Positions& gaps, const Positions& x, const Positions& q);
 
-// Returns how far the places of a pair are apart at most (x: n x 3), beside the gaps that are meant to be there [m].
+// Returns how far the gap of a pair at x (n x 3) is at most from the gap that is meant to be there [m].
 double widest_seam(const Model& model, const Positions& gaps, const Positions& x);
 
 // Lists the vertices that seams join, in the numbering of the pairs.
 std::vector<JoinedVertices> joined_by_seams(const std::vector<SeamPair>& pairs);
 
-// The same for a part of a model, in the part's own numbering.
+// Does the same for a part of a model, in the part's own numbering.
 std::vector<JoinedVertices> joined_by_seams(const Model& model, const Part& part);
 
 }  // namespace supple

@@ -1,5 +1,5 @@
-// Holds the position and velocity of a body: all that a step changes. Not here: what drives it (inputs.h), what a step
-// reports (report.h).
+// Holds the state of a body: position, velocity, and all else that goes from one step to the next. Not here: what
+// drives the body (inputs.h), what a step reports (report.h).
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct Anchors {
   std::vector<char> holds;    // whether each handle holds its vertices; one that has let go does not pull
 };
 
-// All that a body's future depends on, unless its SearchRule remembers earlier steps (solver/step.h). A copy is a
+// Holds all that a body's future depends on, unless its SearchRule remembers earlier steps (solver/step.h). A copy is a
 // snapshot. step() changes x, v, time, and the memory; MovingBody (world/) changes the anchors, and replaces the whole
 // state when it restores one.
 struct State {
@@ -30,8 +30,8 @@ struct State {
   double time = 0;      // [s]
   Anchors anchors;      // may stay empty where only steps are made: they do not read them
   SolverMemory memory;  // what the body's solver remembers of earlier steps; empty: nothing
-  Flow flow;            // the shape that the body keeps, between steps changed by let_flow() (flow_step.h)
-  Bounces bounces;      // that have begun and are not over; World alone (world/) makes bodies bounce
+  Flow flow;            // the shape that the body keeps; let_flow() changes it between steps (flow_step.h)
+  Bounces bounces;      // bounces that are not over; World alone (world/) makes bodies bounce
 };
 
 // Returns the state of a model that is at rest where it was built.

@@ -12,7 +12,7 @@ namespace supple {
 struct TangentShares {
   double tangent = 0.9;
   double constant = 0.1;
-  double axial = 0.7;  // along each principal axis, S is at least this share of the secant stiffness
+  double axial = 0.7;  // along each principal axis, S is at least this share of the stiffness along it alone
   bool operator==(const TangentShares&) const = default;
 };
 

@@ -106,7 +106,7 @@ void TangentSystem::Parts::add_elements(const Model& of) {
   }
 }
 
-// Adds inertia, springs of handles and damping, which are the same in the Hessian and in A.
+// Adds inertia, springs of handles, damping, bending and seams, which are the same in the Hessian and in A.
 void TangentSystem::Parts::add_vertices(const Model& of) {
   const double inertia = shares.tangent * of.scheme.inertia / (of.time_step * of.time_step);
   const double springs = shares.tangent * of.scheme.energy * of.scheme.theta * of.scheme.theta;

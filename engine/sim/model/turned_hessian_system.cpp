@@ -113,8 +113,9 @@ void TurnedHessianSystem::turn_to(const Positions& x, Threads* threads) {
   transpose(p.since, p.since_back);
 }
 
-// With P = 1 - 1 1^T M / m, which takes the motion of the centre of mass out of a motion, z = P R H^-1 R^T P^T r and
-// the motion that r gives to the centre of mass: symmetric, as L-BFGS needs it. [m: total mass]
+// Computes z, the sum of P R H^-1 R^T P^T r and the motion that r gives to the centre of mass: symmetric, as L-BFGS
+// needs it. P = 1 - 1 1^T M / m takes the motion of the centre of mass out of a motion, for each part that nothing
+// holds, with m its mass.
 void TurnedHessianSystem::solve(const Model& model, const Positions& r, Positions& z) {
   Parts& p = *parts_;
   p.right = r;

@@ -37,7 +37,7 @@ class TurnedHessianSystem {
   // mass moves as Newton's law says.
   void solve(const Model& model, const Positions& r, Positions& z);
 
-  // Returns about how many evaluations of the body's elements a renewal costs, by counts alone.
+  // Returns about how many evaluations of the body's elements a renewal costs, by counts of operations alone.
   double renewal_cost(const Model& model) const;
 
   // Counts the numbers of the factor.
@@ -49,7 +49,7 @@ class TurnedHessianSystem {
 };
 
 // Returns about how many evaluations of the body's elements it costs to compute the elements' Hessians and to factor
-// their sum with so many operations, by counts alone.
+// their sum with so many operations, by counts of operations alone.
 double cost_of_hessian(const Model& model, double factor_operations);
 
 }  // namespace supple
