@@ -43,10 +43,11 @@ class PartNumbers {
 
 // Holds a part's vertices and the edges of the elements around each of them.
 struct EdgeGraph {
-  Positions rest;                             // [m]
-  std::vector<double> mass;                   // [kg]
-  std::vector<std::int32_t> begin, neighbor;  // of vertex v: begin[v] .. begin[v + 1]
-  std::vector<double> length;                 // [m]
+  Positions rest;            // [m]
+  std::vector<double> mass;  // [kg]
+  // The neighbours of vertex v are those from begin[v] to begin[v + 1] - 1.
+  std::vector<std::int32_t> begin, neighbor;
+  std::vector<double> length;  // [m]
 
   int vertices() const { return static_cast<int>(mass.size()); }
 };
@@ -109,7 +110,7 @@ std::vector<double> distances_from(const EdgeGraph& graph, std::int32_t start) {
   return distance;
 }
 
-// Holds the distances from each centre.
+// Holds the distances of all vertices from each centre, by centre [m].
 using Distances = std::vector<std::vector<double>>;
 
 bool is_joined(const EdgeGraph& graph, std::int32_t v) { return graph.begin[v] < graph.begin[v + 1]; }
@@ -149,7 +150,7 @@ Distances all_distances(const EdgeGraph& graph, const std::vector<std::int32_t>&
   return distances;
 }
 
-// Moves each centre to the vertex that is nearest to the mean of the vertices nearest to it (Lloyd 1982).
+// Moves each centre to that one of the vertices nearest to it which is closest to their centre of mass (Lloyd 1982).
 void center_centers(const EdgeGraph& graph, const Distances& distances, std::vector<std::int32_t>& centers) {
   std::vector<std::int32_t> owner(graph.vertices(), -1);
   std::vector<Vec3> sum(centers.size(), Vec3::Zero());
@@ -244,9 +245,9 @@ std::vector<PartSums> sums_by_part(const Model& model) {
 }
 
 // Returns how many clusters a body has where it moves by itself. A body of a thousand vertices whose limbs are as thick
-// as they are long has eight clusters. Slender bodies have up to four times as many, because a bar bends between its
-// ends. A cluster of fewer than a dozen vertices would hardly differ from the first level. volume: of its tetrahedra
-// [m^3].
+// as they are long has ten clusters. Slender bodies have up to four times as many, because a bar bends between its
+// ends. A cluster of fewer than a dozen vertices would hardly differ from the first level. volume: that of its
+// tetrahedra [m^3].
 int wanted_alone(const Part& part, double volume) {
   constexpr int vertices_a_cluster = 100, least_vertices_a_cluster = 12, least = 4, most = 12;
   const int vertices = part.free + part.held;

@@ -1,9 +1,9 @@
 // Divides each body of a model into overlapping clusters of vertices, whose rigid motions are the second level of
-// search directions (coarse_system.h). Centres are spread by distance along the body, so that a bar has them along it,
-// and an ear that touches a head is no part of it. The weights are those of an embedded deformation graph (Sumner,
-// Schmid, Pauly 2007, "Embedded deformation for shape manipulation", section 3): a vertex belongs to the nearest few
-// centres, by (1 - d / d_most)^2 at the distance d, where d_most is that of the first centre to which it does not
-// belong.
+// search directions (coarse_system.h). Centres are spread by distance along the body: a bar has them along its length,
+// and an ear that touches a head is far from the place that it touches. The weights are those of an embedded
+// deformation graph (Sumner, Schmid, Pauly 2007, "Embedded deformation for shape manipulation", section 3): a vertex
+// belongs to the nearest few centres, by (1 - d / d_most)^2 at the distance d, where d_most is that of the first centre
+// to which it does not belong.
 #pragma once
 
 #include <array>

@@ -15,8 +15,9 @@ namespace {
 constexpr int rigid_motions = CoarseSystem::motions_of_cluster;
 using MotionBlock = Eigen::Matrix<double, rigid_motions, rigid_motions>;
 
-// Expresses a block in the motions of its clusters about their own centres, along the world's axes. turn: from the
-// group's frame to the world's; s: from the centres to the group's.
+// Expresses a block in the motions of its clusters about their own centres, along the world's axes. turn: the rotation
+// from the group's frame to the world's; s_c, s_d: the ways from both clusters' centres to the group's, as cross
+// products.
 MotionBlock turned(const Eigen::Ref<const MotionBlock>& block, const Mat3& turn, const Mat3& s_c, const Mat3& s_d) {
   const Mat3 b11 = turn * block.block<3, 3>(0, 0) * turn.transpose();
   const Mat3 b12 = turn * block.block<3, 3>(0, 3) * turn.transpose();
@@ -31,7 +32,7 @@ MotionBlock turned(const Eigen::Ref<const MotionBlock>& block, const Mat3& turn,
   return result;
 }
 
-// Holds the polar decomposition of a group's mean deformation gradient, by its singular values.
+// Holds the rotation in the polar decomposition of a group's mean deformation gradient, and its extreme stretches.
 struct GroupPose {
   Mat3 turn;
   double least, most;  // stretches; the least is below 0 where the group is inverted

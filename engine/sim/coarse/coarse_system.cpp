@@ -18,8 +18,8 @@ constexpr int motions = CoarseSystem::motions_of_cluster;
 
 using FunctionBlock = Eigen::Matrix<double, coordinates, coordinates>;
 
-// Returns how the rigid motions of a cluster are made of its functions: e_k is w e_k, and e_k x (X - O) w is the sum of
-// (e_k x e_j) w (X - O)_j.
+// Returns how the rigid motions of a cluster are made of its functions: the shift along e_k is w e_k, and the turn e_k
+// x (X - O) w is the sum of (e_k x e_j) w (X - O)_j.
 Eigen::Matrix<double, coordinates, motions> motions_by_functions() {
   Eigen::Matrix<double, coordinates, motions> p;
   p.setZero();
@@ -131,7 +131,7 @@ void CoarseSystem::make_pieces(const Model& model) {
 }
 
 void CoarseSystem::make_groups(const Model& model) {
-  std::map<std::pair<std::int32_t, int>, std::size_t> place;          // of a cluster and region among the groups
+  std::map<std::pair<std::int32_t, int>, std::size_t> place;          // the group of a cluster and region
   std::vector<std::map<std::int32_t, std::pair<Vec3, double>>> sums;  // by group: V G and V/4 of each vertex
   group_of_.clear();
   for_each_element(model, [&](const ElementView& element) {
@@ -240,8 +240,9 @@ struct RegionStiffness {
   Mat3 constant = Mat3::Zero();  // K [Pa]
 };
 
-// A material such as the polynomial has no stiffness at rest, but resists within a step. So a tenth of the stiffness is
-// that of k, which is fitted over an interval, in a form that costs no energy where an element turns.
+// Returns the stiffness of a region. A material such as the polynomial has no stiffness at rest, but resists within a
+// step. So a tenth of the stiffness is that of k, which is fitted over an interval, in a form that costs no energy
+// where an element turns.
 RegionStiffness stiffness_of(const Model& model, int region) {
   constexpr double share_of_constant = 0.1;
   const double k = model.stiffness[region].k;

@@ -28,8 +28,8 @@ class CoarseSystem {
  public:
   static constexpr int motions_of_cluster = 6;
 
-  // Computes the clusters and groups of a model and their values; does nothing where this model has them already. The
-  // bits of the result do not depend on earlier models.
+  // Computes the clusters and groups of a model and their values; does nothing if they are those of this model already.
+  // The bits of the result do not depend on earlier models.
   void make(const Model& model);
 
   // Makes both matrices of each part at x (n x 3 in the model's order): constant() is Z^T A Z, and hessian() has the
@@ -45,7 +45,8 @@ class CoarseSystem {
   int columns_of(int part) const { return first_column(part + 1) - first_column(part); }
   // Tells whether the last turn_to has made matrices for a part.
   bool has_matrices(int part) const { return blocks_[part].is_made; }
-  // Both matrices have the columns of one part, and only the lower triangle is filled [N/m], [N], [N m].
+  // These return Z^T A Z and Z^T (M/h^2 + H) Z with the columns of one part; only the lower triangles are filled [N/m],
+  // [N], [N m].
   const Eigen::MatrixXd& constant(int part) const { return blocks_[part].constant; }
   const Eigen::MatrixXd& hessian(int part) const { return blocks_[part].hessian; }
 
@@ -53,8 +54,8 @@ class CoarseSystem {
   // [m/s^2].
   void restrict(const Model& model, const Positions& x, const Positions& forces, const std::vector<Vec3>& accelerations,
                 Threads* threads, Eigen::VectorXd& result);
-  // Adds Z y to motions of the free vertices at x [m]. Returns the sum of m times what was added by part [kg m], which
-  // the next call overwrites.
+  // Adds Z y to motions of the free vertices at x [m]. Returns by part the sum of m times the motions that were added
+  // [kg m], which the next call overwrites.
   const std::vector<Vec3>& prolong(const Model& model, const Positions& x, const Eigen::VectorXd& y, Threads* threads,
                                    Positions& motions);
 
@@ -65,7 +66,8 @@ class CoarseSystem {
   void find_turns(const Positions& x, const Positions& motion, std::vector<ClusterTurn>& turns) const;
   // Returns the part of the model that a cluster belongs to.
   int part_of(std::size_t cluster) const { return part_of_[cluster]; }
-  // Returns a bound of the energy that a motion of the free vertices takes by stretching what turns (turning.h) [J].
+  // Returns an upper bound of the energy that a motion of the free vertices takes by stretching what turns (turning.h)
+  // [J].
   double most_stretched(const Model& model, const Positions& motion) const;
   // Returns the weighted mean, at a vertex, of matrices that are given for each cluster.
   Mat3 mean_at(std::int32_t vertex, const std::vector<Mat3>& by_cluster) const;
@@ -77,15 +79,15 @@ class CoarseSystem {
     int part = 0;                        // the part to which this cluster belongs
     double volume = 0;                   // [m^3]
     double stiffness = 0;                // k [Pa]
-    std::vector<std::int32_t> clusters;  // ascending
+    std::vector<std::int32_t> clusters;  // those of the free vertices, ascending
     // The mean deformation gradient and the centre are sums over these vertices.
     std::vector<std::int32_t> vertex;
     std::vector<Vec3> gradient;  // [1/m]
     std::vector<double> share;
     Vec3 rest_center = Vec3::Zero();
     std::vector<std::int32_t> own;  // the vertices whose masses count here
-    // The integrals of d_a phi d_b psi over the elements, where phi and psi are the functions w_c and w_c (X - O)_j
-    // of the clusters; 12 x 12 numbers for each pair of clusters, entry 3 (4 c + j) + a.
+    // The integrals of d_a phi d_b psi over the elements, where phi and psi are the functions w_c and w_c (X - O)_j of
+    // the clusters, and O is rest_center; 12 x 12 numbers for each pair of clusters, entry 3 (4 c + j) + a.
     Eigen::MatrixXd gradients;
     Eigen::MatrixXd constant, hessian;  // 6 x 6 for each pair of clusters
   };

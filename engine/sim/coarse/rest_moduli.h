@@ -14,12 +14,11 @@ struct RestModuli {
 // Returns the moduli of a material. Both are 0 where it has no stiffness at rest, like the polynomial.
 RestModuli rest_moduli(const Material& material);
 
-// Tells whether a material has next to none of its stiffness at rest: less than a hundredth of the k with which
-// directions take it [Pa].
+// Tells whether a material has next to none of its stiffness at rest: a mu of less than a hundredth of k.
 bool is_loose_at_rest(const Material& material, const SystemStiffness& stiffness);
 
-// Returns the symmetric matrix of a membrane that is taut: from the strains of warp and weft and twice their shear
-// strain to the stresses [N/m].
+// Returns the symmetric matrix that takes the strains of warp and weft and twice their shear strain to the stresses of
+// a membrane that is taut [N/m].
 Mat3 plane_moduli(const Membrane& membrane);
 
 }  // namespace supple

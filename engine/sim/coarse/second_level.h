@@ -21,8 +21,8 @@ class SecondLevel {
   void prepare(const Model& model) { system_.make(model); }
   const CoarseSystem& system() const { return system_; }
 
-  // Computes D for a search that starts at x. The block of a part that has no tetrahedra, or is far from its rest
-  // shape, is 0. Returns false where all blocks are.
+  // Computes D for a search that starts at x. The block of a part that is far from its rest shape is 0, and that of a
+  // part without clusters is empty. Returns false where all blocks are 0 or empty.
   bool begin(const Model& model, const Positions& x);
 
   // Moves Z, but not D, to the positions of another iterate: parts turn about the places where they are now. With Z
@@ -33,7 +33,7 @@ class SecondLevel {
   }
 
   int columns() const { return system_.columns(); }
-  std::uint64_t pose() const { return pose_; }  // counts the calls of begin
+  std::uint64_t pose() const { return pose_; }  // counts the calls of begin and move_to
   // Returns the block of D with the columns of one part.
   const Eigen::MatrixXd& difference(int part) const { return difference_[part]; }
   // Returns D times a matrix or a vector of r rows.

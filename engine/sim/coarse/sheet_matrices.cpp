@@ -23,12 +23,13 @@ void add_eight(double* to, const Eight& numbers) {
   __builtin_memcpy(to, &sum, sizeof sum);
 }
 
-constexpr int motions = 6, row_length = 8;  // of a cluster; six numbers and two zeros
+// Rigid motions of a cluster, and the numbers of a row: one for each motion, and two zeros.
+constexpr int motions = 6, row_length = 8;
 constexpr std::size_t longer_numbers = motions * row_length;
 constexpr std::size_t product_numbers = 4 * row_length;  // rows 1, x, y, z; columns 1, x, y, z of A, and of H
 
-// Returns how longer an edge gets, by a unit of each rigid motion of its ends about the origin: its direction and the
-// moment of that.
+// Returns how far an end of an edge moves along the edge by a unit of each rigid motion about the origin: the edge's
+// direction, and the moment of that. Both ends move alike.
 Eight line_of(const Vec3& from, const Vec3& to) {
   const Vec3 edge = to - from;
   const double length = edge.norm();

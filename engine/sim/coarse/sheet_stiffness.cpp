@@ -28,7 +28,7 @@ Mat3 edge_stiffness(const ElementView& triangle, const Membrane& membrane) {
   inverse << triangle.field[0], triangle.field[1], triangle.field[2], triangle.field[3];
   const Eigen::Matrix2d flat = inverse.inverse();
   const Eigen::Vector2d edges[] = {flat.col(0), flat.col(1) - flat.col(0), -flat.col(1)};
-  Mat3 gains;  // of the edges' lengths, from the strains of warp and weft and twice their shear strain [m]
+  Mat3 gains;  // from the strains of warp and weft and twice their shear strain to what the edges gain in length [m]
   for (int e = 0; e < 3; ++e) {
     const Eigen::Vector2d d = edges[e].normalized();
     gains.row(e) << d[0] * d[0], d[1] * d[1], d[0] * d[1];

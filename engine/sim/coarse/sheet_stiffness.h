@@ -1,9 +1,9 @@
 // Computes the stiffnesses of cloth against the rigid motions Z of its clusters: Z^T A Z, and Z^T (M/h^2 + H) Z with
 // the elastic stiffness H. Cloth bends far more within a cluster than solids do, so nothing is kept from its rest shape
-// but numbers of edges, and each step sums over them where they lie. H resists what makes the edges of triangles and
-// springs longer, by the moduli that taut cloth has at rest; a rigid motion of all clusters of an element does not.
-// Inertia, bending and springs of handles are those of A. Not here: solids, whose groups of elements turn as a whole
-// (coarse_system.h).
+// but the stiffness of triangles against longer edges, and each step sums up the triangles where they lie. H resists
+// what makes the edges of triangles longer, by the moduli that taut cloth has at rest; a rigid motion of all clusters
+// of a triangle does not. All else, such as inertia, bending and springs, is that of A. Not here: solids, whose groups
+// of elements turn as a whole (coarse_system.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -47,7 +47,7 @@ class SheetStiffness {
     std::array<double, 6> factor{};
   };
 
-  // Holds a free vertex's weights and clusters. Motions of its row of A belong to the clusters `joined`.
+  // Holds a free vertex's weights and clusters. The vertices of its row of A belong to the clusters `joined`.
   struct Vertex {
     std::array<double, most_of_vertex> weight;
     std::array<std::int32_t, most_of_vertex> cluster;  // in the part's numbering
@@ -57,8 +57,8 @@ class SheetStiffness {
   // Describes an entry A_ij of a vertex's row, over the free vertices of the part.
   struct Entry {
     std::int32_t vertex;                              // j, of the part
-    double constant = 0, kept = 0;                    // A_ij, and what H has of it beside longer edges [N/m]
-    std::array<std::uint8_t, most_of_vertex> slot{};  // of j's clusters among those that are joined
+    double constant = 0, kept = 0;                    // A_ij, and what H has of it beside the stiffness of edges [N/m]
+    std::array<std::uint8_t, most_of_vertex> slot{};  // where j's clusters are among `joined`
   };
 
   struct Sheet {
@@ -73,7 +73,7 @@ class SheetStiffness {
 
   static void make_rows(const Part& part, int number, const Clusters& clusters, const Eigen::SparseMatrix<double>& a,
                         Sheet& sheet);
-  // These are in sheet_matrices.cpp; origin: about which motions are meant there.
+  // These add up longer_ and products_ (sheet_matrices.cpp). origin: the place about which motions are meant.
   void add_longer_edges(const Sheet& sheet, const Vec3& origin, const Positions& x);
   void add_rows(const Sheet& sheet, const Vec3& origin, const Positions& x);
 

@@ -9,7 +9,7 @@
 namespace supple {
 namespace {
 
-// Returns the direction of an angle, as a cross product.
+// Returns the unit vector along an angle, as a cross product.
 Mat3 axis_of(const Vec3& angle) { return cross_matrix(angle / angle.norm()); }
 
 constexpr double least_angle = 1e-8;  // [rad]; a smaller turn stretches by no more than round-off

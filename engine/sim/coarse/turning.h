@@ -30,7 +30,7 @@ class Turning {
 
   // Returns roughly the energy that it takes to stretch what turns along the straight motion [J].
   double energy() const;
-  // Returns what one part of the model takes of it [J].
+  // Returns the share that one part of the model has in this energy [J].
   double energy_of(std::size_t part) const { return part < energy_.size() ? energy_[part] : 0; }
 
   // Computes e (n_free x 3).
@@ -39,7 +39,7 @@ class Turning {
 
  private:
   std::vector<ClusterTurn> turns_;
-  std::vector<Mat3> by_cluster_, by_vertex_;  // C
+  std::vector<Mat3> by_cluster_, by_vertex_;  // C, by cluster and by vertex
   std::vector<double> energy_;                // by part of the model; empty without clusters
   Positions right_;
 };

@@ -50,8 +50,8 @@ void BlockFactor::Column::keep_rows(Eigen::Index count) {
 
 void BlockFactor::begin(const Members& members, const std::vector<GroupKey>& keys) { replace(members, keys, {}); }
 
-// A single column keeps its memory. Of several, the shape of what an earlier step left must not decide how sums of
-// small matrices are made.
+// A single column keeps its memory. Several columns give theirs up: the shape of a matrix that an earlier step has left
+// must not decide how the sums of products of small matrices are made.
 void BlockFactor::begin(std::vector<GroupKey> keys, std::vector<Members> members) {
   std::vector<Eigen::Index> sizes;
   for (const Members& group : members) sizes.push_back(std::ssize(group));
@@ -210,7 +210,7 @@ bool BlockFactor::compute(const Fill& fill, Threads* threads) {
 }
 
 // Subtracts from entries between members of a group and of a column what earlier columns have in both. target: the
-// entries from a row and a column on.
+// entries from first_row and first_column on.
 void BlockFactor::subtract_updates(int column, int group, Eigen::Index first_row, Eigen::Index first_column,
                                    Eigen::Ref<Eigen::MatrixXf> target) const {
   for (const Update& update : updates_[column]) {
@@ -264,7 +264,7 @@ bool BlockFactor::factor_diagonal(int group, const Fill& fill) {
   return done.info() == Eigen::Success;
 }
 
-// Rows that are known get the column's new members, and the others all.
+// Computes, in rows that are known, the entries of the column's new members, and in other rows those of all members.
 void BlockFactor::factor_block(int group, Block& block, const Fill& fill) const {
   const Column& column = columns_[group];
   const Members& members = columns_[block.group].members;

@@ -1,10 +1,10 @@
-// The Cholesky factor L L^T of a symmetric matrix C of numbered members that fall into groups, of which only those that
-// share a part have entries with each other (block_pattern.h). Blocks of groups are dense, and computed in single
-// precision, column of blocks by column of blocks: what earlier columns subtract from a block is gathered when the
-// block's turn comes ("left-looking"; Davis 2006, "Direct methods for sparse linear systems", section 4.8). When
-// members come and go, those that stay keep their order in their group, and blocks that depend on nothing new stay;
-// within a group that nothing new acts on, the first members keep their factor. With one group this is a dense factor
-// that grows at its end.
+// Holds the Cholesky factor L L^T of a symmetric matrix C. The rows and columns of C are its members: they have numbers
+// and fall into groups; two groups have entries with each other only if they share a part of the model
+// (block_pattern.h). Blocks of groups are dense, and computed in single precision, column of blocks by column of
+// blocks: what earlier columns subtract from a block is gathered when the block's turn comes ("left-looking"; Davis
+// 2006, "Direct methods for sparse linear systems", section 4.8). When members come and go, those that stay keep their
+// order in their group, and blocks that depend on nothing new stay; within a group on which nothing new acts, the first
+// members keep their factor. With one group, this is a dense factor that grows at its end.
 #pragma once
 
 #include <functional>
@@ -22,8 +22,8 @@ class BlockFactor {
   using RowMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   using Members = std::vector<Eigen::Index>;
 
-  // Writes entries of C: row i of `block` gets those of the member rows[i] with the first shift + i + 1 of `columns`,
-  // or with all that there are.
+  // Writes entries of C: row i of `block` gets those of the member rows[i] with the first shift + i + 1 members of
+  // `columns`, or with all of `columns` if these are fewer.
   using Fill = std::function<void(std::span<const Eigen::Index> rows, std::span<const Eigen::Index> columns,
                                   Eigen::Index shift, Eigen::Ref<RowMatrix> block)>;
 
@@ -32,7 +32,8 @@ class BlockFactor {
   // Does the same, but keeps what it can. place: the numbers that earlier members have now, by their earlier numbers;
   // -1 for those that are gone.
   void replace(const Members& members, const std::vector<GroupKey>& keys, const std::vector<Eigen::Index>& place);
-  // Adds a member. What is appended comes after all groups, and leaves their factor as it is, until the next replace().
+  // Adds a member. Until the next replace() it comes after all groups and leaves their factor as it is, unless what was
+  // appended costs more than all groups: compute() then sorts it into the groups and factors all of them anew.
   void append(Eigen::Index member, const GroupKey& key);
 
   // Returns a rough count of the operations of the next compute().
@@ -53,8 +54,8 @@ class BlockFactor {
 
  private:
   struct Block {
-    int group;                // of its rows
-    Eigen::MatrixXf numbers;  // in its top left corner
+    int group;                // the group of its rows
+    Eigen::MatrixXf numbers;  // the entries, in the top left corner
     Eigen::Index known = 0;   // rows that it holds already
   };
   struct Column {
@@ -65,18 +66,18 @@ class BlockFactor {
     Eigen::Index first = 0;     // members that it held before the present compute()
     std::vector<Block> below;   // ascending
     bool is_new = false;        // whether its numbers are others than after the last compute()
-    RowMatrix seen;             // its rows of L^-1 W, in its upper rows
+    RowMatrix seen;             // the column's rows of L^-1 W, in the upper rows of this matrix
     Eigen::Index seen_members = 0;
     Eigen::MatrixXf product;  // the product of these rows with themselves, the lower triangle
-    Eigen::Index summed = 0;  // members that it holds already
+    Eigen::Index summed = 0;  // members that the product holds already
     bool has_product = false;
 
     Eigen::Index size() const { return static_cast<Eigen::Index>(members.size()); }
-    // Leaves what belongs to this many first members.
+    // Keeps only what belongs to the first `count` members.
     void keep(Eigen::Index count);
     void keep_rows(Eigen::Index count);
   };
-  // A block of an earlier column, which acts on a column where it has the rows of its group.
+  // Names the block by which an earlier column acts on a later one: its rows are those of the later one's group.
   struct Update {
     int column;
     int block;
@@ -93,7 +94,7 @@ class BlockFactor {
   static bool sum_product(Column& column);
 
   std::vector<Column> columns_;               // in the order of elimination, and then those that were appended
-  std::size_t ordered_ = 0;                   // how many of them were not
+  std::size_t ordered_ = 0;                   // how many of them were not appended
   std::vector<std::vector<Update>> updates_;  // by column: the blocks that act on it
   std::vector<std::vector<int>> levels_;      // each has columns on which only columns of earlier levels act
   bool is_linked_ = false;

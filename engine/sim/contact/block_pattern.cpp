@@ -90,7 +90,8 @@ std::vector<int> elimination_order(const std::vector<GroupKey>& keys, const std:
   return order;
 }
 
-// A column has what its group shares entries with, and what the columns have whose first block below is in its row.
+// A column has blocks for the later groups with which its own group shares entries, and for those of each earlier
+// column whose first block below the diagonal is in its row.
 std::vector<std::vector<int>> blocks_below(const std::vector<GroupKey>& keys) {
   std::vector<std::vector<int>> below = neighbours_of(keys);
   for (std::size_t g = 0; g < below.size(); ++g)

@@ -23,7 +23,7 @@ class VertexParts {
   void set(const std::vector<Part>& parts);
   int count() const { return static_cast<int>(ends_.size()) + 1; }
   std::int32_t of(std::int32_t vertex) const;
-  GroupKey of(const ContactStencil& stencil) const;  // of the free vertices
+  GroupKey of(const ContactStencil& stencil) const;  // the parts of its free vertices
 
  private:
   std::vector<std::int32_t> ends_;  // by part but the last one: its last free vertex + 1
@@ -38,7 +38,7 @@ std::vector<int> elimination_order(const std::vector<GroupKey>& keys, const std:
 // block, ascending.
 std::vector<std::vector<int>> blocks_below(const std::vector<GroupKey>& keys);
 
-// Counts the multiplications and additions that factor such a matrix, all groups in the best order that is known.
+// Counts the multiplications and additions that factor such a matrix, its groups in the order of elimination_order().
 double factor_operations(const std::vector<GroupKey>& keys, const std::vector<Eigen::Index>& sizes);
 
 }  // namespace supple

@@ -9,13 +9,13 @@ namespace {
 constexpr std::size_t most_axes = 8;  // axes of a list; beyond, all directions count as coupled with it
 constexpr double right_angle = 1e-7;  // cosine below which directions are uncoupled in single precision
 
-// Compares points, of which most are vertices.
+// Tells whether two points are the same; most of them are vertices.
 bool same(const ContactStencil& a, const ContactStencil& b) {
   return a.is_vertex() && b.is_vertex() ? a.vertex[0] == b.vertex[0] : a == b;
 }
 
 // Tells whether two stencils are equal or, between surfaces, nearly so: a point that slides on a triangle has other
-// weights in each iterate. Wrong by 0.02, the weights of a stiffness of 1e4 m/h^2 leave four times m/h^2 unknown.
+// weights in each iterate. Weights that are wrong by 0.02 leave four times m/h^2 of a stiffness of 1e4 m/h^2 unknown.
 bool alike(const ContactStencil& a, const ContactStencil& b) {
   constexpr double much = 0.02;
   if (same(a, b)) return true;
@@ -189,7 +189,7 @@ bool Capacitance::extend(Threads* threads) {
   return std::find(done.begin(), done.end(), 0) == done.end();
 }
 
-// Returns the entry of A^-1 between two points: the mean of the entries among their vertices, by both points' weights.
+// Returns the entry of A^-1 between two points: the sum of the entries among their vertices, by both points' weights.
 float Capacitance::entry(const ContactStencil& a, const ContactStencil& b) const {
   if (a.is_vertex() && b.is_vertex()) return entries_.entry(a.vertex[0], b.vertex[0]);
   double sum = 0;

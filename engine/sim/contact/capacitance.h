@@ -1,15 +1,15 @@
-// The small system of the Woodbury identity, K^-1 + N^T A^-1 N over some stiff directions: it gives the forces at
-// contacts that keep them from moving. It takes the entries of A^-1 among the vertices of touching points alone, which
-// are kept from step to step as long as A stays. Directions at right angles do not feel each other, because A is the
-// same for x, y and z: on flat ground normals and both tangents are three systems. Nor do directions that act on no
-// common part of a model: a system is sparse by blocks (block_factor.h), and dense for a body alone. All in single
-// precision.
+// Builds and solves the small system of the Woodbury identity, K^-1 + N^T A^-1 N over some stiff directions, whose
+// solution is the forces at the contacts. The system takes the entries of A^-1 among the vertices of touching points
+// alone, which are kept from step to step as long as A stays. Directions at right angles do not feel each other,
+// because A is the same for x, y and z: on flat ground, normals and both tangents are three systems. Nor do directions
+// feel each other that act on no common part of a model. So a system is sparse by blocks (block_factor.h), and dense
+// for a body alone. It is in single precision.
 //
 // The second level of directions puts B^-1 = A^-1 + Z D Z^T in the place of A^-1. The matrix is then C + W D W^T, where
-// C is what it was, and W = N^T Z. For several parts this matrix has the blocks of C. It is factored as it stands,
-// whenever Z moves. For a body alone C keeps its factor and its three systems, and the rest is added by (C + W D
-// W^T)^-1 = C^-1 - C^-1 W (1 + D W^T C^-1 W)^-1 D W^T C^-1 (Woodbury). Done so for several parts, it took a row of 80
-// cubes 3.5 times as long, because all columns of W are coupled there.
+// C is K^-1 + N^T A^-1 N, and W = N^T Z. For several parts this matrix has the blocks of C. It is factored as it
+// stands, whenever Z moves. For a body alone C keeps its factor and its three systems, and the rest is added by (C + W
+// D W^T)^-1 = C^-1 - C^-1 W (1 + D W^T C^-1 W)^-1 D W^T C^-1 (Woodbury). With this formula for several parts, a row of
+// 80 cubes takes 3.5 times as long, because all columns of W are coupled there.
 #pragma once
 
 #include <Eigen/LU>
@@ -39,7 +39,7 @@ struct StiffDirection {
 
 // Lists, by number, the directions that are solved for together.
 struct CoupledDirections {
-  std::vector<Vec3> axes;  // all that occur; where they are many, all other directions count as coupled
+  std::vector<Vec3> axes;  // all that occur; where they are many, every direction counts as coupled with the list
   std::vector<Eigen::Index> members;
 };
 
@@ -50,9 +50,10 @@ std::size_t couple(const StiffDirection& direction, Eigen::Index number, std::ve
 // Describes motions Z of a model's parts, such that B^-1 = A^-1 + Z D Z^T takes the place of A^-1
 // (coarse/second_level.h).
 struct AddedMotions {
-  std::uint64_t pose = 0;         // another one wherever Z or D are others; not 0
+  std::uint64_t pose = 0;         // another number wherever Z or D is another one; not 0
   std::vector<int> first_column;  // where the columns of Z of each part begin, and r, the number of all
-  // Adds what a direction is on the columns of Z to r numbers. They are 0 for parts on which it does not act.
+  // Adds the products of a direction n with the columns of Z, n^T Z, to r numbers. The products are 0 for parts on
+  // which n does not act.
   std::function<void(const StiffDirection&, double* row)> add_row;
   std::function<const Eigen::MatrixXd&(int part)> difference;  // the block of D
 };
@@ -62,20 +63,21 @@ class Capacitance {
   // Returns the directions in the order of their numbers, which is not that in which they were set.
   const std::vector<StiffDirection>& directions() const { return directions_; }
 
-  // Leaves a system without directions. The same remains of a system that is not positive definite.
+  // Takes all directions out of the system. set() and append() do so, too, where the system is not positive definite.
   void clear();
 
   // Makes a step independent of earlier ones, except for entries that would be computed again with the same result.
-  // parts: of the model whose vertices the directions will act on; without this call it has one.
+  // parts: those of the model on whose vertices the directions will act; without this call, it has one part.
   void begin_step(const System& system, const std::vector<Part>& parts);
 
   // Says which motions the systems have that are built from now on; null: none. They must stay as they are until the
   // next call.
   void add_motions(const AddedMotions* motions) { motions_ = motions; }
 
-  // Builds the system of these directions, which must be sorted by their points' first vertices. What the present
-  // system has of them, or nearly so, stays as it is, because a correction need not be exact. Returns false when the
-  // system is not positive definite. threads: null for the calling one alone.
+  // Builds the system of these directions, which must be sorted by their points' first vertices. Where the present
+  // system has a direction, or one that is nearly the same, it keeps its own, because a correction need not be exact.
+  // append() adds directions to the system. Both return false when the system is not positive definite. threads: null
+  // for the calling one alone.
   bool set(const System& system, const std::vector<StiffDirection>& wanted, Threads* threads);
   bool append(const System& system, const std::vector<StiffDirection>& more, Threads* threads);
 
@@ -109,7 +111,7 @@ class Capacitance {
   std::vector<StiffDirection> directions_;
   std::vector<GroupKey> keys_;  // by direction: the parts on which it acts
   std::vector<CoupledDirections> lists_;
-  std::vector<BlockFactor> factors_;  // of the lists
+  std::vector<BlockFactor> factors_;  // by list
   InverseEntries entries_;
   std::uint64_t entries_of_ = 0;  // System::id
 
@@ -121,9 +123,9 @@ class Capacitance {
   // One part has all columns of W here.
   RowMatrix rows_;                             // W
   std::vector<char> known_;                    // by direction: whether its row is known
-  std::size_t lists_counted_ = 0;              // in `between_`
+  std::size_t lists_counted_ = 0;              // lists whose products are in `between_`
   Eigen::MatrixXd between_;                    // W^T C^-1 W, for the matrix C without the motions
-  Eigen::PartialPivLU<Eigen::MatrixXd> both_;  // of 1 + D W^T C^-1 W
+  Eigen::PartialPivLU<Eigen::MatrixXd> both_;  // factor of 1 + D W^T C^-1 W
 };
 
 }  // namespace supple

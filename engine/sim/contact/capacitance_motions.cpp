@@ -86,7 +86,7 @@ void Capacitance::add_products_of_motions(std::span<const Eigen::Index> rows, st
   });
 }
 
-// Prepares the solves of one part.
+// Prepares solves with motions for a body alone.
 void Capacitance::couple_motions() {
   if (motions_ == nullptr || has_several_parts()) return;
   bool is_new = lists_counted_ != lists_.size();

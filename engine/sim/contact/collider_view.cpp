@@ -105,8 +105,8 @@ std::optional<SurfacePoint> ColliderView::closest_within(const Vec3& p, double m
 }
 
 // Returns which share of a way, from one time in the step to another, leads to the layer; nothing when it is not met,
-// or not within the share `latest`. Steps as long as the distance never overshoot (Hart 1996, "Sphere tracing");
-// triangles are asked for the way itself.
+// or not within the share `latest`. Steps as long as the distance never overshoot (Hart 1996, "Sphere tracing"); a
+// shape made of triangles is asked where the way itself enters it.
 std::optional<double> ColliderView::meets(const Way& way, double from, double to, double field_at_start,
                                           QueryMemory& near, double latest) const {
   const double length = way.length;
@@ -145,8 +145,7 @@ std::optional<ColliderView::Entry> ColliderView::entry(const Way& way, double fi
   return Entry{closest(at(way, *share), near), *share};
 }
 
-// Tells whether a way between two places in the open may lead through triangles, not just through the layer around
-// them.
+// Tells whether a way may lead through triangles, not just through the layer around them.
 bool ColliderView::leads_through(const Way& way, double field_at_a, double field_at_b) const {
   const double to_a = field_at_a + collider_.thickness, to_b = field_at_b + collider_.thickness;
   if (to_a <= 0 || to_b <= 0) return true;

@@ -12,14 +12,15 @@
 
 namespace supple {
 
-// Traits of a shape that a search asks for once.
+// Holds the traits of a shape, for which a search asks once.
 struct ColliderTraits {
   double certainty;             // Shape::certainty
   double half_thickness;        // Shape::half_thickness [m]
   double usual_half_thickness;  // Shape::usual_half_thickness [m]
 };
 
-// The way of a point of the world through the collider's frame, from q when the step starts to x when it ends.
+// Describes the way of a point of the world through the collider's frame, from q when the step starts to x when it
+// ends.
 struct Way {
   Vec3 q, x;      // in the world [m]
   Vec3 a, b;      // its ends in the collider's frame [m]
@@ -56,7 +57,8 @@ class ColliderView {
   Vec3 pace(const Way& way, double share) const;
   // Returns the motion of the collider in the rest of the step, without what deforms it.
   Eigen::Isometry3d motion_after(double share) const;
-  // Returns the same, with the motion of the surface closest to a place of the world at the start of the step.
+  // Returns the motion in the rest of the step of that part of the surface which is closest to a place of the world at
+  // the start of the step.
   Eigen::Isometry3d motion_near(const Vec3& place, double share) const;
   bool moves() const { return moves_; }
   bool deforms() const { return surface_ != nullptr; }
@@ -74,34 +76,35 @@ class ColliderView {
   // inside.
   std::optional<SurfacePoint> closest_within(const Vec3& p, double most, QueryMemory& near) const;
 
-  // Returns a bound below the distance of p to the layer that follows from earlier answers; minus infinity where
+  // Returns a lower bound of the distance of p to the layer, as it follows from earlier answers; minus infinity where
   // nothing follows.
   double certain_distance(const Vec3& p, const QueryMemory& near) const {
     return shape_.certain_distance(p, near) - collider_.thickness;
   }
 
-  // Returns how far the collider's own points within a ball move in the step: they move with its centre and turn about
-  // it.
+  // Returns how far the collider's own points within a ball move in the step at most: they move with the ball's centre
+  // and turn about it.
   double most_moved(const Vec3& center, double radius) const;
-  // Returns a bound below the distances at the start of all points within a ball.
+  // Returns a lower bound of the distances that the points within a ball have at the start.
   double least_distance(const Vec3& center, double radius, QueryMemory& near) const;
-  // Returns by how much the distance may change within a length.
+  // Returns by how much the distance may change along a way of this length.
   double uncertain(double length) const { return length / traits_.certainty; }
   // Returns how far a point at this distance from the layer can certainly go without meeting it.
   double clear(double distance) const {
     return std::max(0.0, traits_.certainty * (distance + collider_.thickness) - collider_.thickness);
   }
 
-  // The place where a vertex entered, or where it was if the step started inside.
+  // Describes the surface through which a point enters or, if the point starts inside, the one that is closest to it
+  // then.
   struct Entry {
     SurfacePoint surface;
     double way;  // share of the step, 0 to 1
   };
-  // Finds where a way enters; nothing when it stays outside, or when it does so only after this share of the step.
+  // Finds where a way enters; nothing when it stays outside, or enters only after the share `latest` of the step.
   std::optional<Entry> entry(const Way& way, double field_at_a, QueryMemory& near, double latest = 1) const;
 
-  // Finds the surface that holds a vertex at the end of its way: the closest one, unless it came by another side; then
-  // it is usually that one. Nothing when there is none within `reach`. What goes around the rim of a plate of
+  // Finds the surface that holds a vertex at the end of its way: the closest one or, where the vertex came in by
+  // another side, usually that side. Nothing when there is none within `reach`. What goes around the rim of a plate of
   // triangles, through no more than the layer, is held by the closest side.
   std::optional<SurfacePoint> holding(const Way& way, double field_at_a, double reach, QueryMemory& near) const;
 
@@ -122,8 +125,8 @@ class ColliderView {
   const SurfaceMove* surface_ = nullptr;  // null: the collider does not deform in the step
   bool moves_ = false;
   bool bends_ = false;  // whether the collider turns so far that ways are arcs
-  // Hold the collider's turn in a step where it bends ways: about the world's axes, and as an angle about an axis
-  // [rad].
+  // These hold the collider's turn in a step, where it bends ways: as a vector along the world's axes, and as an axis
+  // and an angle [rad].
   Vec3 turn_ = Vec3::Zero(), axis_ = Vec3::Zero();
   double angle_ = 0;
 };

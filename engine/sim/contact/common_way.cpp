@@ -22,7 +22,7 @@ struct Inside {
     Vec3 at;
     MovingSurface::Place closest;
   };
-  const MovingSurface* surface;  // of the other part
+  const MovingSurface* surface;  // the surface of the other part
   std::vector<Point> points;
   std::size_t asked = 0;
 

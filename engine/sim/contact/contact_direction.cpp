@@ -88,13 +88,14 @@ std::size_t affordable(const Model& model, const std::vector<StiffDirection>& wa
   return largest <= most ? wanted.size() : wanted.size() * most / largest;
 }
 
-// Takes some tangents of a joined model out of its wanted directions when it has more than `most` of them: those of the
-// points of lowest rank stay. `normals` come first, and stay: without some of them, a search of bodies that lie on each
-// other comes to a stand. Returns the tangents, which are to be scaled by themselves. Without that, points slide where
-// they should stick, and of a cloth on a soft body nine of ten full steps are refused.
+// Takes some tangents out of the wanted directions of a joined model when there are more than `most` directions: those
+// of the points of lowest rank stay. The first `normals` of the directions are normals, and stay: without some of them,
+// a search of bodies that lie on each other comes to a stand. Returns the tangents that were taken out, which are to be
+// scaled by themselves. Without that, points slide where they should stick, and of a cloth on a soft body nine of ten
+// full steps are refused.
 std::vector<StiffDirection> take_out_tangents(std::size_t normals, std::size_t most,
                                               std::vector<StiffDirection>& wanted) {
-  constexpr double least_share = 0.25;  // of the directions, for tangents
+  constexpr double least_share = 0.25;  // of `most`, for tangents
   constexpr double room_used = 0.95;    // what stays is spread less evenly, and its work is not quite as estimated
   if (wanted.size() <= most) return {};
   const auto all = static_cast<std::size_t>(room_used * double(most));
@@ -156,8 +157,9 @@ double share(const System& system, const StiffDirection& s) {
   return std::sqrt(a / (a + s.stencil.weights_squared() * s.stiffness));
 }
 
-// Scales the motion of the rest by T. When a vertex has several directions that are not at right angles, they are
-// applied one after the other, and in the opposite order on the way back.
+// Scales a motion by the factor of T that belongs to one direction of the rest. When a vertex has several directions
+// that are not at right angles, their factors are applied one after the other, and in the opposite order on the way
+// back.
 void scale_rest(const System& system, const StiffDirection& s, Positions& r) {
   s.add(-(1 - share(system, s)) * s.along(r) / s.stencil.weights_squared(), r);
 }
@@ -276,9 +278,9 @@ double gap_after(const Contact& contact, const Positions& x, const Positions& di
   return contact.normal.dot(contact.stencil.at(x) + contact.stencil.of_free(direction)) - contact.offset;
 }
 
-// Adds the correction to a motion that minimises the quadratic model again. off: how far the motion has come off the
-// planes of the system, in the order of its directions [m]; ahead, gaps: further planes, and how far the motion would
-// lead through them [m].
+// Adds to a motion the correction after which it minimises the quadratic model again. off: how far the motion has come
+// off the planes of the system, in the order of its directions [m]; ahead, gaps: further planes, and how far the motion
+// would lead through them [m].
 void bend(const Model& model, const Eigen::VectorXf& off, const std::vector<StiffDirection>& ahead,
           const std::vector<float>& gaps, ContactCorrection& c, Positions& motion) {
   const Eigen::Index before = off.size();

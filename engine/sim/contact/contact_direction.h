@@ -40,12 +40,12 @@ struct ContactCorrection {
   Positions unbent;                     // the direction before foresee_contacts [m]
   // The second level of directions (coarse/second_level.h); null: there is none.
   SecondLevel* second = nullptr;
-  Eigen::VectorXd coarse;  // Z^T of the forces in hand, r
+  Eigen::VectorXd coarse;  // Z^T of the forces, r numbers
   AddedMotions motions;    // those of the second level, for the system
 };
 
 // Returns the largest number of mutually coupled directions that the system of a body alone may have. For several
-// bodies, the operations of their factor are limited.
+// bodies, the operations that factor the system are limited instead.
 std::size_t most_coupled_directions(const Model& model);
 
 // Lists in correction.wanted the stiff directions of the contacts found at x.
@@ -60,10 +60,10 @@ void apply_inverse(const Model& model, const ContactSettings& settings, ContactC
                    SolveScratch& scratch, Positions& r, Positions& z);
 
 // Bends a direction that would lead from x through planes of `contacts` that are near and not yet touched. The
-// quadratic model is minimised again with the energies of these planes, which the full step would meet; vertices that
-// would still go through stop at their planes. Without this, most full steps are rejected once a contact patch grows.
-// Returns whether the direction was bent. A bent direction may lead uphill; the one before is kept in
-// correction.unbent.
+// quadratic model is minimised again with the energies of these planes, which the full step would meet; where the
+// system would have too many directions, the points stop at these planes instead. Without this, most full steps are
+// rejected once a contact patch grows. Returns whether the direction was bent. A bent direction may lead uphill; the
+// one before is kept in correction.unbent.
 bool foresee_contacts(const Model& model, const ContactSettings& settings, const std::vector<Contact>& contacts,
                       const Positions& x, ContactCorrection& correction, Positions& direction);
 

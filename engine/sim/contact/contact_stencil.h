@@ -17,9 +17,9 @@ namespace supple {
 
 struct ContactStencil {
   std::array<std::int32_t, 4> vertex;        // ascending, so that the free ones come first
-  std::array<double, 4> weight{1, 0, 0, 0};  // of the vertices, not 0 where they count
-  std::int32_t count = 1;                    // vertices: 1 to 4
-  std::int32_t free = 1;                     // vertices that the solver moves
+  std::array<double, 4> weight{1, 0, 0, 0};  // by vertex, not 0 where the vertex counts
+  std::int32_t count = 1;                    // the number of vertices, 1 to 4
+  std::int32_t free = 1;                     // the number of those that the solver moves
 
   static ContactStencil at_vertex(std::int32_t v) { return {{v, v, v, v}}; }
   bool is_vertex() const { return count == 1; }

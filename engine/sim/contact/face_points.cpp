@@ -38,17 +38,18 @@ double longest_edge_squared(const Model& model, const Positions& q) {
   return longest;
 }
 
-// Returns the depth below which contact of a body's points with a piece begins [m]. size: of the body [m].
+// Returns the depth below which contact of a body's points with a piece begins [m]. size: the size of the body [m].
 double slack_of(const FacePoints::Piece& piece, double size) { return std::min(usual_depth(size), piece.most_slack); }
 
 // Tells whether a triangle whose corners lie outside a bulge may reach deeper than the slack: its points are at most
-// 1/sqrt(3) of the longest edge from a corner, so that it cuts off a cap of at most this edge^2 / (6 radius).
+// 1/sqrt(3) of the longest edge from the nearest corner, so that it cuts off a cap of at most this edge^2 / (6 radius)
+// in height.
 bool is_finer(const FacePoints::Piece& piece, double slack, double thickness, double edge_squared) {
   return edge_squared > 6 * (piece.piece.bulge + thickness) * slack;
 }
 
-// Returns the point of a triangle with these weights: of the triangle, an edge or a vertex, after weights that are next
-// to nothing have been left out.
+// Returns the stencil of the point of a triangle with these weights. Weights that are next to nothing are left out, so
+// that it may be the stencil of a point of an edge, or of a vertex.
 ContactStencil stencil_at(const Model& model, Eigen::Index triangle, const Vec3& weights) {
   std::array<std::pair<std::int32_t, double>, 3> parts;
   int count = 0;
@@ -114,7 +115,7 @@ struct TriangleSearch {
     return places;
   }
 
-  // Returns the distance of the surface from which a triangle at the start may reach it in the step.
+  // Returns how far from the surface a triangle may be at the start, if it is to reach the surface in the step [m].
   double reach(Eigen::Index triangle) const {
     double freely = 0;
     for (const std::int32_t v : model.surface.row(triangle))
@@ -186,8 +187,8 @@ struct TriangleSearch {
   }
 };
 
-// Tells whether there is a point of the same edge or face so near that it may stand for this one, or there are enough
-// of them. A thin piece needs points closer to each other than a round one.
+// Tells whether the same edge or face has a point so near that it may stand for this one, or as many points as it may
+// have. A thin piece needs points closer to each other than a round one.
 bool is_known(const FacePoints& faces, const FacePoints::Candidate& candidate, const Positions& q) {
   const ContactStencil& stencil = candidate.stencil;
   const double edge = (q.row(stencil.vertex[1]) - q.row(stencil.vertex[0])).norm();
@@ -243,7 +244,7 @@ void choose_pieces(const Model& model, const Collider& collider, const Positions
   }
 }
 
-// Finds how far each group is from the collider, and how fast the collider moves there.
+// Finds how far each group is from the collider at least, and how far the collider moves there at most.
 void measure_groups(const Model& model, const ColliderView& view, const Positions& q, FacePoints& faces) {
   faces.distance.resize(groups_of(model));
   faces.collider_move.resize(groups_of(model));

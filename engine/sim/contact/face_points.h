@@ -20,7 +20,7 @@ namespace supple {
 struct FacePoint {
   ContactStencil stencil;
   double slack;          // depth below which contact begins [m]
-  Vec3 out;              // from the point to where its distance is measured, in the collider's frame [m]
+  Vec3 out;              // offset from the point to where its distance is measured, in the collider's frame [m]
   double field;          // distance at the start of the step, negative inside [m]
   QueryMemory near;      // memory of the point's queries
   std::int32_t earlier;  // the previous point with the same first vertex; -1: none
@@ -31,13 +31,13 @@ struct FacePoint {
 struct FacePoints {
   struct Piece {
     ShapePiece piece;
-    double most_slack;  // that it allows bodies of any size [m]
+    double most_slack;  // the largest slack for a body of any size [m]
     Bounds box;         // around it, in the collider's frame
   };
   std::vector<Piece> pieces;          // parts of the collider that may be finer than the surface
   double thickness = 0;               // of the collider's layer [m]
-  std::vector<double> distance;       // least signed distance of a group's triangles at the start [m]
-  std::vector<double> collider_move;  // how far the collider's own points near a group move [m]
+  std::vector<double> distance;       // lower bound of the distances of a group's triangles at the start [m]
+  std::vector<double> collider_move;  // how far the collider's own points near a group move at most [m]
   std::vector<FacePoint> points;
   std::vector<std::int32_t> newest;  // the newest point of each first vertex; -1: none
 

@@ -33,9 +33,9 @@ double stiffness_of(const StepInputs& inputs, double size, const ContactWork& wo
 }
 
 // Returns how far a vertex may move until contacts are found anew [m]: a small share of how deep anything is pressed
-// into what it touches; 0 where they are found at each iterate. A plane that is kept so long is wrong by less, where
-// the surface bends or ends. Finding the contacts of cloth is half of a step and more. Of solids it is not, and some of
-// their steps would take more trials.
+// into what it touches. A plane that is kept so long is wrong by less than that where the surface bends or ends.
+// Returns 0, which means at each iterate, where some part is a solid: finding the contacts of cloth is half of a step
+// and more, but finding those of solids is not, and some of their steps would take more trials.
 double kept_way(const Model& model, const StepInputs& inputs, ContactWork& work) {
   constexpr double share = 0.1;
   if (std::ranges::any_of(model.parts, &Part::solid)) return 0;
@@ -111,7 +111,8 @@ void find_ways_out(const Model& model, const StepInputs& inputs, ContactWork& wo
   for (std::size_t p = 0; p < model.parts.size(); ++p) find_way_out(model, inputs, p, faces[p], work);
 }
 
-// Keeps the memories of solids that are the same as before, if the number of vertices is the same.
+// Keeps the memories of colliders that are the same closed surfaces as before, if the number of vertices is the same;
+// the others begin empty.
 void remember_vertices(const Model& model, const std::vector<Collider>& colliders, ContactWork& work) {
   work.memories.resize(colliders.size());
   for (std::size_t c = 0; c < colliders.size(); ++c) {
@@ -266,8 +267,9 @@ class Planes {
     return {stencil, {collider_}, Vec3::Zero(), 0, unit * stencil.mass(model_.mass), 0, number};
   }
 
-  // Adds a contact with the plane through a surface's point, lowered by the slack and by as much of the depth as need
-  // not be corrected in this step. offset: from the contact's point to the place whose way this is.
+  // Adds a contact with the plane through a surface's point, lowered by the slack or, if that is more, by as much of
+  // the depth as need not be corrected in this step. offset: the way from the contact's point to the place whose way
+  // this is.
   void add(const SurfacePoint& surface, const Way& way, const Vec3& offset, double field, double slack,
            QueryMemory& near, Contact& contact, std::vector<Contact>& list) const {
     contact.normal = view_.end().linear() * surface.normal;

@@ -6,8 +6,8 @@ namespace supple {
 namespace {
 
 // Returns which share of a way a point may go before it is deeper than `allowed` [m]; 1 also where the share is no less
-// than `least`. A point that touches already is stopped only by a collider that comes to it: one that rests would be
-// stopped on every step by its own weight.
+// than `least`. A point that touches already is stopped only by a collider that comes to it: by its own weight, a point
+// that rests would be stopped in every step.
 double share_to_impact(const ColliderView& view, const Way& way, double field, double allowed, double least,
                        QueryMemory& near) {
   if (field <= 0) {

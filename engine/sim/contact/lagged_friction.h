@@ -1,8 +1,8 @@
 // Tells from which normal force the friction of a contact follows in a step. It is the force on the point when the step
 // began or, where the point arrives or comes out of a deep overlap, at most the force that stops it alone (Li et al.
-// 2020, section 5.3, lag it too). The overlap of an iterate would give a force that is many times too large; it only
-// reduces friction, smoothly, on a point that is leaving. With a jump at the surface, points would touch and leave
-// without end.
+// 2020, section 5.3, lag it too). The overlap of an iterate would give a force that is many times too large; the
+// overlap only reduces friction, smoothly, on a point that is leaving. With a jump at the surface, points would touch
+// and leave without end.
 #pragma once
 
 #include <algorithm>
@@ -16,9 +16,10 @@ inline void renew_friction(Contact& contact) {
   contact.friction = contact.coefficient * std::min(contact.most_pressing, 2 * contact.stiffness * contact.depth);
 }
 
-// Begins the friction of a contact in a step. A point that was pressed in then keeps its friction until its depth is
-// half of what it was. coefficient: of Coulomb's law; depth_before: when the step began; depth_unhindered: at the
-// prediction [m]; mass_over_h2: of the point, times the scheme's factor [N/m].
+// Begins the friction of a contact in a step. A point that was pressed in when the step began keeps its friction until
+// its depth is half of what it was. coefficient: that of Coulomb's law; depth_before, depth_unhindered: the point's
+// depth when the step began, and at the prediction [m]; mass_over_h2: the point's mass over h^2, times the scheme's
+// factor of inertia [N/m].
 inline void begin_friction(double coefficient, double depth_before, double depth_unhindered, double mass_over_h2,
                            Contact& contact) {
   const bool was_pressed = depth_before > 0;

@@ -16,8 +16,8 @@ double near_in(const Part& part, const Work::Surface& surface) {
   return part.solid ? std::min(0.01 * part.size, 0.25 * surface.edge) : surface.layer;
 }
 
-// Returns how near to the outside of the surface points are looked at, where they come no nearer than foreseen [m]: a
-// part of the body may fall on another one that rests.
+// Returns the distance from the surface within which points outside are looked at, if they come no nearer than foreseen
+// [m]. A part of the body may fall on another one that rests.
 double margin_of(const Model& model, const StepInputs& inputs, const Part& part, const Work::Surface& surface) {
   return near_in(part, surface) + 0.25 * model.time_step * model.time_step * inputs.gravity.norm();
 }

@@ -11,7 +11,7 @@
 namespace supple {
 namespace {
 
-// Returns the largest motion of one of some vertices beside one of some others [m].
+// Returns the largest motion of one of the first vertices relative to one of the others [m].
 template <std::size_t N, std::size_t M>
 double motion_beside(const std::array<std::int32_t, N>& one, const std::array<std::int32_t, M>& other,
                      const Positions& q, const Positions& x) {
@@ -22,7 +22,7 @@ double motion_beside(const std::array<std::int32_t, N>& one, const std::array<st
 }
 
 // Tells whether two things may come nearer to each other than `distance` [m] on their way: they come no nearer than
-// half of what both distances have beyond the motion. before, after: their distances at the start and at the end [m].
+// (before + after - motion) / 2. before, after: their distances at the start and at the end [m].
 bool may_come_nearer(double before, double after, double motion, double distance) {
   return before + after - motion <= 2 * distance;
 }
@@ -40,7 +40,8 @@ double distance_to_triangle(const Vec3& p, const OwnSheet::Corners& corners) {
                    distance_to_edge(p, corners[2], corners[0])});
 }
 
-// Two edges are closest where their lines are, if that is on both, or else at an end of one.
+// Returns the distance of two edges [m]. They are closest where their lines are, if that is on both, or else at an end
+// of one.
 double distance_of_edges(const TwoEdges& edges) {
   if (edges.meet(0)) return std::abs(edges.volume) / edges.across.norm();
   const Vec3 to = edges.from + edges.way, other_to = edges.other_from + edges.other_way;
@@ -129,7 +130,7 @@ bool OwnSheet::are_beside(const EdgeEnds& one, const EdgeEnds& other) const {
          are_neighbours(one[1], other[1]);
 }
 
-// Tells whether a vertex and a triangle are not near each other where nothing bends the sheet.
+// Tells whether a vertex and a triangle are not near each other at rest.
 bool OwnSheet::is_apart(std::int32_t vertex, std::int32_t triangle) const {
   const std::optional<Over> at_rest = over(corners_of(triangle, rest_), rest_.row(vertex));
   return !at_rest || std::abs(at_rest->above) > 2 * layer_;

@@ -17,12 +17,12 @@ namespace supple {
 
 class OwnSheet {
  public:
-  // moving: the sheet's surface, which is to be passed in all that is asked. rest: n x 3 [m]. sewn: pairs of vertices
-  // that seams hold together; what is near one of them in the mesh is then near the other one, too.
+  // moving: the sheet's surface, which the functions below take, too. rest: n x 3 [m]. sewn: pairs of vertices that
+  // seams hold together; what is near one of them in the mesh is then near the other one, too.
   OwnSheet(const MovingSurface& moving, const Positions& rest, const std::vector<JoinedVertices>& sewn = {});
 
-  // Tells whether the sheet touches itself on the way that the surface goes in a step. q, x: start and end, n x 3 [m],
-  // where the surface is; carried: the common motion [m].
+  // Tells whether the sheet touches itself on the way that the surface goes in a step. q, x: the places at the start
+  // and the end, n x 3 [m], at which the surface must be; carried: the common motion [m].
   bool touches(const MovingSurface& moving, const Positions& q, const Positions& x, const Vec3& carried) const;
   // Tells the same of q alone; the surface's start and end must be there.
   bool overlaps(const MovingSurface& moving, const Positions& q) const;
@@ -52,11 +52,11 @@ class OwnSheet {
   // Describes a point over a triangle.
   struct Over {
     Vec3 weights;  // barycentric, of the place below it; none is negative, and their sum is 1
-    Vec3 normal;   // of unit length
-    double above;  // the triangle's plane, negative behind it [m]
+    Vec3 normal;   // the triangle's unit normal
+    double above;  // how far the point is above the triangle's plane, negative behind it [m]
   };
-  using Corners = std::array<Vec3, 3>;  // of a triangle [m]
-  // Returns nothing for a point beside the triangle.
+  using Corners = std::array<Vec3, 3>;  // the corners of a triangle [m]
+  // Returns how a point is over a triangle; nothing for a point beside the triangle.
   static std::optional<Over> over(const Corners& corners, const Vec3& p);
   // Returns six times the volume of the tetrahedron of a triangle and a point, negative behind the triangle [m^3].
   static double volume(const Corners& corners, const Vec3& p);
@@ -74,7 +74,8 @@ class OwnSheet {
                 const Points& points, const Edges& edges) const;
   void find_boxes(const Vec3& carried, const Positions& q, const Positions& x) const;
   Corners corners_of(std::int32_t triangle, const Positions& x) const;
-  // These tell what is near each other in the mesh: the same vertex, or the two ends of an edge, and what has these.
+  // These tell whether two things are near each other in the mesh. Two vertices are near if they are the same, the ends
+  // of an edge, or brought together by a seam; triangles and edges are near if they have such vertices.
   bool are_neighbours(std::int32_t a, std::int32_t b) const;
   bool are_beside(std::int32_t vertex, std::int32_t triangle) const;
   bool are_beside(const EdgeEnds& one, const EdgeEnds& other) const;

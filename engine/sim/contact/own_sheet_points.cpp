@@ -16,7 +16,8 @@ EdgeEnds joined(const Part& part, const EdgeEnds& edge) {
 
 }  // namespace
 
-// way, freely: of one side of a pair beside the other, to the iterate and to the prediction [m].
+// Returns how near each other the sides of a pair need a plane [m]. way, freely: the motions of one side relative to
+// the other, to the iterate and to the prediction [m].
 double OwnSheetPoints::reach_of_pair(const Vec3& way, const Vec3& freely) const {
   return reach_of(way.norm(), std::max(freely.norm(), fall_));
 }
@@ -79,7 +80,7 @@ void OwnSheetPoints::find(std::size_t index, std::vector<Contact>& list) const {
 }
 
 double OwnSheetPoints::share_to_impact(std::size_t index, double least) const {
-  constexpr double deepest = 0.5;  // of the layer, for a point that arrives
+  constexpr double deepest = 0.5;  // how deep a point that arrives may be in the layer, over its thickness
   if (index >= pairs_.points.size()) {
     const OwnSheet::EdgePair& pair = pairs_.edges[index - pairs_.points.size()];
     return TouchedEdges::share_to_impact(joined(part_, pair.one), joined(part_, pair.other), least);

@@ -22,7 +22,7 @@ class OwnSheetPoints : public TouchedEdges {
   void find(std::size_t index, std::vector<Contact>& list) const;
 
   // Returns the share of the way at which a pair that passes through each other is as deep in the layer as it may be;
-  // 1: it never is. least: later impacts do not matter.
+  // 1: it never is. least: the share after which impacts do not matter.
   double share_to_impact(std::size_t index, double least) const;
 
  private:

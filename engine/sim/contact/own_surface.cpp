@@ -25,12 +25,12 @@ struct OwnSurface::Motion {
   // Describes how a vertex moves before a triangle.
   struct Approach {
     double motion;   // beside the triangle [m]
-    double nearest;  // it comes no nearer than this [m]
+    double nearest;  // a lower bound of their distance on the way [m]
   };
 
   const Positions &q, &x;
-  Positions start, end;        // the triangles' centroids, and
-  std::vector<double> radius;  // how far from them the corners are at most [m]
+  Positions start, end;        // the triangles' centroids [m]
+  std::vector<double> radius;  // by triangle: how far its corners are from its centroid at most [m]
   Positions normal;            // of the triangles at the start
 
   Motion(const Triangles& triangles, const Positions& from, const Positions& to)
@@ -52,7 +52,8 @@ struct OwnSurface::Motion {
     }
   }
 
-  // What moves by m between two places that are a and b away comes no nearer than (a + b - m) / 2.
+  // Returns how a vertex approaches a triangle. What moves by m between two places that are a and b away comes no
+  // nearer than (a + b - m) / 2.
   Approach approach(std::int32_t v, std::int32_t t) const {
     const Vec3 before = (q.row(v) - start.row(t)).transpose(), after = (x.row(v) - end.row(t)).transpose();
     const double motion = (after - before).norm();
@@ -100,7 +101,7 @@ bool OwnSurface::are_near_at_rest(std::int32_t a, std::int32_t b, double distanc
   return (centroids_.row(a) - centroids_.row(b)).squaredNorm() <= reach * reach;
 }
 
-// Returns the way that the surface faces at a vertex: the sum of the areas of the triangles there.
+// Returns the unit vector in which the surface faces at a vertex: along the sum of the areas of the triangles there.
 Vec3 OwnSurface::facing(const Positions& x, std::int32_t vertex) const {
   Vec3 sum = Vec3::Zero();
   for (std::int32_t i = around_begin_[std::size_t(vertex)]; i < around_begin_[std::size_t(vertex) + 1]; ++i) {

@@ -1,8 +1,8 @@
 // Finds where a solid touches itself: points of its surface that come through a triangle of it from outside, or are
-// inside another part of it. A point is not inside because it is behind a triangle, as all of the body's far side is:
-// it is inside where a line from that triangle leads to it through elements that are not its own (element_paths.h).
-// Nothing is asked of a point and a triangle near it, which share an element or nearly so, nor where elements are
-// turned inside out and have no outside.
+// inside another part of it. That a point is behind a triangle does not tell that it is inside, because all of the
+// body's far side is behind the triangle. The point is inside where a line from that triangle leads to it through
+// elements that are not its own (element_paths.h). Nothing is asked of a point and a triangle near it, which share an
+// element or nearly so, nor where elements are turned inside out and have no outside.
 #pragma once
 
 #include <optional>
@@ -16,16 +16,16 @@ namespace supple {
 
 class OwnSurface {
  public:
-  static constexpr double same_way = 0.5;  // cosine of normals; a point does not touch a face that looks as it does
+  static constexpr double same_way = 0.5;  // cosine of normals; a point does not touch a face that faces the same way
   static constexpr double against = -0.1;  // the same for a point deeper behind the face than contact presses it, since
                                            // most points near such a face are on the next side of an edge of the body
 
-  // tets, triangles: of the body, with its boundary. rest: n x 3 [m]; size: of the body [m].
+  // tets, triangles: the body's elements and its boundary. rest: n x 3 [m]; size: the size of the body [m].
   OwnSurface(Tetrahedra tets, Triangles triangles, const Positions& rest, double size);
 
   // Tells whether the body touches itself on the way that the surface goes in a step: whether a point is inside when it
-  // begins, or comes through a triangle. Not if the body begins tangled: more than a hundredth of its elements are
-  // inverted. q, x: start and end, n x 3 [m]; carried: the common motion [m].
+  // begins, or comes through a triangle. Returns false for a body that begins tangled, with more than a hundredth of
+  // its elements inverted. q, x: start and end, n x 3 [m]; carried: the common motion [m].
   bool touches(const MovingSurface& moving, const Positions& q, const Positions& x, const Vec3& carried) const;
   // Tells whether a point is inside at q alone; the surface's start must be there.
   bool overlaps(const MovingSurface& moving, const Positions& q) const;
@@ -45,14 +45,14 @@ class OwnSurface {
   void find_pairs(const MovingSurface& moving, const Positions& q, const Positions& x, double margin,
                   const Vec3& carried, Pairs& pairs) const;
 
-  // Returns the place of the surface out of which a vertex has the shortest way, if it begins the step inside.
-  // triangles: that it may touch.
+  // Returns the place of the surface by which a vertex has the shortest way out, if it begins the step inside.
+  // triangles: those that the vertex may touch.
   std::optional<MovingSurface::Place> place_around(const MovingSurface& moving, const Positions& q, std::int32_t vertex,
                                                    std::span<const std::int32_t> triangles) const;
 
   // Tells whether a vertex and a triangle are so near in the mesh that they are not asked whether they touch.
   bool are_neighbours(std::int32_t vertex, std::int32_t triangle) const;
-  // Tells whether two triangles are within a distance at rest [m].
+  // Tells whether two triangles may be within a distance of each other at rest [m], by balls around them.
   bool are_near_at_rest(std::int32_t a, std::int32_t b, double distance) const;
   double edge() const { return edge_; }  // the mean length of the surface's edges at rest [m]
 
@@ -62,7 +62,7 @@ class OwnSurface {
   // Points that are deeper inside than half an edge are left out, within these limits, over the body's size.
   static constexpr double least_deep = 0.006, most_deep = 0.02;
 
-  double most_cosine(double above) const;  // of normals, for a point that begins so far above a face
+  double most_cosine(double above) const;  // largest one at which a point so far above a face may touch it
   bool passes(const Positions& q, const Positions& x, std::int32_t vertex, std::int32_t triangle) const;
   bool is_collapsed_around(const Positions& x, std::int32_t vertex, std::int32_t triangle) const;
   Vec3 facing(const Positions& x, std::int32_t vertex) const;

@@ -5,9 +5,9 @@
 
 namespace supple {
 
-// A point that has moved by `way` since the step began, and would have moved by `freely` if nothing held it, gets a
-// plane within this distance of a surface, because an iteration may still move it that much further. A point at rest
-// hardly moves, but the next iteration may move it as far as gravity would.
+// Returns the distance from a surface within which a point gets a plane [m]. way, freely: how far the point has moved
+// since the step began, and how far it would have moved if nothing held it [m]. An iteration may still move it that
+// much further: a point at rest hardly moves, but the next iteration may move it as far as gravity would.
 inline double reach_of(double way, double freely) { return 0.25 * std::max(way, freely); }
 
 }  // namespace supple

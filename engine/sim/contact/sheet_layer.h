@@ -4,7 +4,7 @@
 
 namespace supple {
 
-// Returns the thickness of the layer on one side [m]. mean_edge: of the sheet at rest [m].
+// Returns the thickness of the layer on one side [m]. mean_edge: the mean length of the sheet's edges at rest [m].
 inline double sheet_layer(double mean_edge) { return 0.1 * mean_edge; }
 
 }  // namespace supple

@@ -40,10 +40,10 @@ bool SheetPair::is_within_own(std::int32_t v, const Vec3& a, const Place& before
   return !own_.moving->last_exit_at_start(a, before.point).has_value();
 }
 
-// Finds where the point is when the step begins, unless that is known. It is the same at all iterates, and found once
-// for all distances up to the one that was asked for.
+// Finds where the point is when the step begins, unless that is known. The answer is the same at all iterates, and is
+// found once for all distances up to twice the one that is asked for.
 void SheetPair::look_at_start(std::int32_t v, const Vec3& a, double most, Work::BesideSheet& known) const {
-  constexpr double ahead = 2;  // so many times as far is looked, because later iterates may ask further
+  constexpr double ahead = 2;  // looks so many times as far, because later iterates may ask further
   if (std::isfinite(known.distance) && known.asked >= 0) return;
   if (known.asked >= most) return;
   known.asked = ahead * most;

@@ -17,15 +17,15 @@ class SheetPair : public TouchedSurface {
 
   std::size_t points() const { return points_.size(); }
 
-  // Adds the contact of a point, if there is one. index: of the point among those of its part.
+  // Adds the contact of a point, if there is one. index: the number of the point among those of its part.
   void find(std::size_t index, std::vector<Contact>& list) const;
 
   // Returns the share of the way at which a point that crosses the sheet is as deep in its layer as it may be; 1: it
-  // never is. least: later impacts do not matter.
+  // never is. least: the share after which impacts do not matter.
   double share_to_impact(std::size_t index, double least) const;
 
  private:
-  static constexpr double deepest = 0.5;  // of the layer, for a point that arrives
+  static constexpr double deepest = 0.5;  // how deep a point that arrives may be in the layer, over its thickness
 
   double side_of(const Place& place, const Vec3& p, const Positions& x) const;
   bool is_looked_at(std::size_t index) const;

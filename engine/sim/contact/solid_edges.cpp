@@ -20,7 +20,8 @@ std::array<Vec3, 3> corners_of(const Part& part, const SurfaceWork::Parts::Surfa
 }
 
 // Tells whether a unit vector points out of the solid between the two faces of a ridge, and away from both by an angle
-// of at least this sine. edge: of the surface; along: the way from its lower vertex to the higher one.
+// of at least this sine. edge: the number of the ridge among the surface's edges; along: the way from its lower vertex
+// to the higher one.
 bool leads_out(const Part& part, const SurfaceWork::Parts::Surface& surface, std::size_t edge, const Vec3& along,
                const Vec3& way, const Positions& x, double least) {
   const auto& [one, other] = surface.edge_faces[edge];

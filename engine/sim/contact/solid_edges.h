@@ -16,8 +16,8 @@ namespace supple {
 
 class SolidEdges : public TouchedEdges {
  public:
-  // Tells whether a meeting is one whose edges are looked at: of a sheet with a solid, or of two solids, in one of its
-  // two directions.
+  // Tells whether the edges of a meeting are looked at: they are in that of a sheet's points with a solid, and in one
+  // of the two meetings of two solids.
   static bool are_asked(const Model& model, const StepInputs& inputs, std::size_t meeting);
 
   SolidEdges(const Model& model, const StepInputs& inputs, std::size_t meeting, const Positions& q, const Positions& y,
@@ -30,7 +30,7 @@ class SolidEdges : public TouchedEdges {
   void find(std::size_t index, std::vector<Contact>& list) const;
 
   // Returns the share of the way at which an edge that comes through a ridge is as deep as it may be; 1: it never is.
-  // least: later impacts do not matter.
+  // least: the share after which impacts do not matter.
   double share_to_impact(std::size_t index, double least) const;
 
  private:

@@ -77,7 +77,8 @@ double SolidPair::share_to_layer(std::int32_t v, const Place& before, const Vec3
 // Tells whether the points' own surface is that of a solid, which faces outward.
 bool SolidPair::faces() const { return own_.moving != nullptr && model_.parts[meeting_.points].solid; }
 
-// Tells whether a place is in the surface's box where the step began, and may be inside, far from all triangles.
+// Tells whether a place is in the box of the surface where the step began: only then may it be inside, far from all
+// triangles.
 bool SolidPair::is_in_box(const Vec3& a) const {
   const Bounds& box = surface_.moving->bounds_at_start();
   return (a.array() >= box.lower.array()).all() && (a.array() <= box.upper.array()).all();
@@ -106,13 +107,13 @@ const MovingSurface::Place* SolidPair::beginning_inside(std::size_t index) const
   return place && place->distance <= 0 ? &*place : nullptr;
 }
 
-// Returns how far from the surface contact begins between a point and a place [m]. The layer of a sheet is there to be
-// seen, so that no overhang of what is drawn comes on top of it.
+// Returns how far from the surface contact begins between a point and a place [m]. A sheet's layer and the overhangs of
+// what is drawn do not add up: the larger one counts.
 double SolidPair::layer_at(std::int32_t v, const Place& place) const {
   return std::max(layer_, model_.overhang_at(v) + overhang_at(place));
 }
 
-// Returns the way that a point faces at an iterate; 0 for that of a sheet.
+// Returns the way that a point faces at an iterate; zero for a point of a sheet.
 Vec3 SolidPair::facing_at_end(std::int32_t v) const {
   if (!faces()) return Vec3::Zero();
   return own_.moving->normal_at_end(own_vertex(model_, model_.parts[meeting_.points], v));
@@ -125,9 +126,9 @@ std::optional<MovingSurface::Place> SolidPair::closest(std::int32_t v, const Vec
 }
 
 // Returns the place closest to a point among those that do not face the way of the point itself. find(takes): the
-// closest place among some triangles; nearest: set to how far away the surface is at all. Whether the point is inside
-// follows from the place that is closest of all, but where the point is on the surface there: the edges of equal
-// boxes that lie on one another are on their sides.
+// closest place among some triangles; nearest: gets the distance of the surface, whichever way it faces [m]. Whether
+// the point is inside follows from the place that is closest of all, unless the point is on the surface there, as the
+// lower edges of a box are on the sides of an equal box on which it lies.
 template <class Find>
 std::optional<MovingSurface::Place> SolidPair::closest(const Vec3& p, const Vec3& facing, const Positions& x,
                                                        const Find& find, double* nearest) const {
@@ -151,8 +152,8 @@ std::optional<MovingSurface::Place> SolidPair::closest(const Vec3& p, const Vec3
   return place;
 }
 
-// Adds the contact of a point that leaves with all the others; tells whether the common way leads it out. The normal
-// is that way: whatever the triangle there does, both forces act along one line.
+// Adds the contact of a point that leaves with all the others; tells whether the common way leads it out. The contact's
+// normal is along that way, so that both forces act along one line whatever the triangle there does.
 bool SolidPair::leave_commonly(std::int32_t v, const Vec3& a, double reach, std::vector<Contact>& list) const {
   const Vec3 way = common_.length * common_.direction;
   const std::optional<Entry> exit = surface_.moving->last_exit_at_start(a, a + way);

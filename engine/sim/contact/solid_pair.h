@@ -11,17 +11,18 @@ namespace supple {
 
 class SolidPair : public TouchedSurface {
  public:
-  // meeting: its number in the inputs. Its list of where points begin is filled as points are asked.
+  // meeting: its number in the inputs. The list of where its points begin (work.beginnings) is filled as they are
+  // asked.
   SolidPair(const Model& model, const StepInputs& inputs, std::size_t meeting, const Positions& q, const Positions& y,
             const Positions& x, Work& work);
 
   std::size_t points() const { return points_.size(); }
 
-  // Adds the contact of a point, if there is one. index: of the point among those of its part.
+  // Adds the contact of a point, if there is one. index: the number of the point among those of its part.
   void find(std::size_t index, std::vector<Contact>& list) const;
 
-  // Returns the share of the way at which a point that arrives is deeper than it may be; 1: it never is. least: later
-  // impacts do not matter.
+  // Returns the share of the way at which a point that arrives is deeper than it may be; 1: it never is. least: the
+  // share after which impacts do not matter.
   double share_to_impact(std::size_t index, double least) const;
 
   // Returns the place closest to a point that begins the step inside; null for one that does not, or is not asked.
@@ -54,7 +55,7 @@ class SolidPair : public TouchedSurface {
   std::vector<Work::Beginning>& beginnings_;
   bool only_sharp_;
   const Work::CommonWay& common_;
-  double layer_;  // of a sheet, which its points keep from a solid [m]
+  double layer_;  // how far the points of a sheet are kept from a solid; 0 for those of a solid [m]
 };
 
 }  // namespace supple

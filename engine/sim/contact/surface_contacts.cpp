@@ -99,8 +99,8 @@ double thinnest_layer(const StepInputs& inputs, SurfaceWork& all) {
 
 namespace {
 
-// Lists what a search finds of each point in turn, on all threads; results do not depend on their number. The lists are
-// those from `first` on; returns the number of all lists then.
+// Writes what a search finds of its points to the lists from `first` on, on all threads; the lists do not depend on the
+// number of threads. Returns the number of all lists then.
 template <class Search>
 std::size_t search_points(const Search& search, Threads* threads, std::size_t first, Work& work) {
   const int chunks = static_cast<int>((search.points() + points_a_chunk - 1) / points_a_chunk);
@@ -141,7 +141,8 @@ void add_in_order(std::size_t lists, Work& work, std::vector<Contact>& found) {
   for (const Contact* contact : work.unordered) found.push_back(*contact);
 }
 
-// Returns the share of the ways at which the first of all points is deeper than it may be, or `least`.
+// Returns the share of the ways at which the first of all points is deeper than it may be, or `least` where that is
+// less.
 template <class Search>
 double first_share(const Search& search, double least) {
   for (std::size_t i = 0; i < search.points(); ++i) least = std::min(least, search.share_to_impact(i, least));

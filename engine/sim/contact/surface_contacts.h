@@ -40,16 +40,16 @@ class SurfaceWork {
 void begin_surfaces(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
                     SurfaceWork& work);
 
-// Returns the thickness of the thinnest layer of the sheets that touch something, on one side; infinite where there are
-// none [m].
+// Returns the thickness, on one side, of the thinnest layer of the model's sheets; infinite where there are none, or
+// where nothing meets [m].
 double thinnest_layer(const StepInputs& inputs, SurfaceWork& work);
 
 // Finds the contacts between parts at x, ordered by surface and number of the point, and adds them to a list.
 void find_surface_contacts(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
                            const Positions& x, Threads* threads, SurfaceWork& work, std::vector<Contact>& found);
 
-// Lowers the shares of the way from q to x that the parts can go (by part) to where a point becomes deeper than usual
-// (usual_depth.h) in another part. Both parts of an impact are stopped.
+// Lowers the shares, by part, of the ways from q to x that the parts can go: to where a point becomes deeper than usual
+// (usual_depth.h) in the surface of another part or of its own. Both parts of an impact are stopped.
 void stop_at_surfaces(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& x,
                       SurfaceWork& work, std::vector<double>& shares);
 

@@ -14,7 +14,7 @@ namespace {
 
 using Work = SurfaceWork::Parts;
 
-constexpr double least_cosine = 0.5;  // of the normals of two faces; below it, what is between them is sharp
+constexpr double least_cosine = 0.5;  // least cosine of the normals of two faces between which nothing is sharp
 
 // Lists the triangles of a part, with its vertices numbered as in its own model.
 Triangles triangles_of(const Model& model, const Part& part) {

@@ -1,6 +1,6 @@
-// Makes the contacts of an edge of a sheet with an edge of another one, or of the same one, at one iterate, and holds
-// what they share with contacts of edges with those of a solid. Which edges may touch is found elsewhere
-// (sheet_edges.h, own_sheet_points.h, solid_edges.h).
+// Makes contacts of edges with edges at one iterate. Contacts between edges of sheets, of two or of the same one, are
+// made here as a whole; of contacts with edges of a solid, only what all contacts of edges share. Which edges may touch
+// is found elsewhere (sheet_edges.h, own_sheet_points.h, solid_edges.h).
 #pragma once
 
 #include <vector>
@@ -20,7 +20,7 @@ class TouchedEdges : public TouchedSurface {
   // Returns how far from the surface an edge needs a plane [m].
   double reach_of_edge(const EdgeEnds& edge) const;
 
-  // Calls visit(number) for each edge of the surface that an edge may come nearer to than a margin [m]. An edge is in
+  // Calls visit(number) for each edge of the surface to which an edge may come nearer than `margin` [m]. An edge is in
   // the boxes of all triangles that have it, so that one of them is enough.
   template <class Visit>
   void visit_edges_near(const EdgeEnds& edge, double margin, const Visit& visit) const {
@@ -36,17 +36,17 @@ class TouchedEdges : public TouchedSurface {
   // pass through each other twice in a step are taken as if they did not.
   void add_edges(const EdgeEnds& edge, const EdgeEnds& other, double reach, std::vector<Contact>& list) const;
 
-  // Adds the contact of two edges with the plane through the closest place of the other one. end: both at the iterate;
-  // field: the distance above the layer where the step began [m].
+  // Adds the contact of two edges with the plane through the closest place of the other edge. end: both edges at the
+  // iterate; field: the distance above the layer where the step began [m].
   void add_pair(const EdgeEnds& edge, const EdgeEnds& other, const TwoEdges& end, const Vec3& normal, double field,
                 std::vector<Contact>& list) const;
 
-  // Returns the share of the way at which edges that pass through each other are as deep as they may be, or `least`
-  // where that is no later impact.
+  // Returns the share of the way at which edges that pass through each other are as deep as they may be, or `least` if
+  // that comes first.
   double share_to_impact(const EdgeEnds& edge, const EdgeEnds& other, double least) const;
 
   double layer_;              // [m]
-  double deepest_at_impact_;  // beyond the place where edges pass through each other; negative: before it [m]
+  double deepest_at_impact_;  // how far edges may go beyond where they pass each other; negative: before that [m]
 };
 
 }  // namespace supple

@@ -25,12 +25,13 @@ class TouchedSurface {
                  const Positions& y, const Positions& x, const Work& work);
 
  protected:
-  static constexpr double same_way = 0.5;   // cosine of normals; a point is not held by a face that looks as it does
+  static constexpr double same_way = 0.5;   // cosine of normals; a point is not held by a face that faces the same way
   static constexpr double opposite = -0.3;  // cosine of normals below which they belong to opposite sides
 
   std::int32_t corner(std::int32_t triangle, int k) const;
 
-  // Returns how far from the surface a vertex needs a plane [m]. way: that it has made, beside the surface's own.
+  // Returns how far from the surface a vertex needs a plane [m]. way: how far the vertex has moved beside the surface's
+  // common motion [m].
   double reach_at(std::int32_t v, double way) const;
 
   // Tells whether a point is over a place's face, and neither beside nor below it by more than the usual depth. Equal
@@ -43,7 +44,8 @@ class TouchedSurface {
   // Returns the unit normal of a triangle; zero where it has no area.
   Vec3 normal_of(std::int32_t triangle, const Positions& x) const;
 
-  // Returns the place that a triangle's point has at the end of the step, seen from a point.
+  // Returns the place of a triangle with these weights at the end of the step, and its distance from a point; nothing
+  // where the triangle has no area.
   std::optional<Place> place_at_end(std::int32_t triangle, const Vec3& weights, const Vec3& p) const;
 
   // Returns how far a point that moves from a to b comes in the step into the side on which it enters, beside the
@@ -62,7 +64,7 @@ class TouchedSurface {
   void add(const ContactStencil& stencil, std::int32_t number, const Vec3& normal, double field,
            std::vector<Contact>& list, double layer) const;
 
-  // Makes the stencil of a point before a place.
+  // Makes the stencil of a vertex, `point`, against a place.
   ContactStencil stencil_of(std::int32_t point, const Place& place) const;
   // Makes a stencil of vertices with weights that are not 0.
   template <std::size_t N>
@@ -80,7 +82,8 @@ class TouchedSurface {
   const Part& part_;
   const Work::Surface& surface_;
   double size_;  // of the smaller part [m]
-  double fall_;  // in one step from rest: one part may rest on what holds it while the other falls [m]
+  // How far a body falls in one step from rest: one part may rest on what holds it while the other falls [m].
+  double fall_;
 
  private:
   void add_vertex(std::int32_t vertex, double weight, ContactStencil& stencil) const;
@@ -89,8 +92,9 @@ class TouchedSurface {
 // Tells of each meeting whether only the sharp points of its part are looked at. Of two solids whose points touch each
 // other, those of the coarser one follow from those of the finer one, but for edges and corners: each contact of two
 // surfaces that lie on one another would count twice, and the contacts would nearly depend on each other. Of a sheet
-// and a solid, all points of the sheet are looked at, and those of the solid only where it is the finer one. Of two
-// sheets all are looked at: with those of one alone, ten layers that fall on a ball come through each other.
+// and a solid, all points of the sheet are looked at, and all points of the solid where it is the finer one, but
+// otherwise its sharp ones alone. Of two sheets all are looked at: with those of one alone, ten layers that fall on a
+// ball come through each other.
 std::vector<char> only_sharp_points(const Model& model, const StepInputs& inputs, const SurfaceWork::Parts& work);
 
 // Tells whether the two parts of a meeting are so far apart, on all of their ways to an iterate, that no point of the

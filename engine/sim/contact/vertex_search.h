@@ -67,7 +67,8 @@ struct VertexSearch {
     return known;
   }
 
-  // Returns the least signed distance of a part's vertices at the start of the step, as far as it is below `above`.
+  // Returns the least signed distance of a part's vertices at the start of the step, or `above` where none is below
+  // that.
   double deepest_start(std::size_t c, const Part& part, double above) const {
     const ColliderView own = view(c);
     double least = above;

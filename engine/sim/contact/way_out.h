@@ -1,5 +1,6 @@
-// A common way out for a body that lies inside colliders. Its vertices cannot each leave by the surface that is closest
-// to them: those on the two sides of a wall would leave in opposite directions, and the body would hang on it for ever.
+// Finds a common way out for a body that lies inside colliders. Its vertices cannot each leave by the surface that is
+// closest to them: those on the two sides of a wall would leave in opposite directions, and the body would hang on it
+// for ever.
 #pragma once
 
 #include <optional>
@@ -8,7 +9,7 @@
 
 namespace supple {
 
-// All colliders where they stand at one time, as one obstacle. What it is made of must outlive it.
+// Shows all colliders, where they stand at one time, as one obstacle. The colliders must outlive it.
 class Obstacles {
  public:
   Obstacles(const std::vector<Collider>& colliders, std::vector<Eigen::Isometry3d> poses);
@@ -32,7 +33,7 @@ class Obstacles {
 
 struct WayOut {
   Vec3 direction = Vec3::Zero();  // of unit length
-  double distance = 0;            // to go [m]
+  double distance = 0;            // how far the points must go [m]
 };
 
 // Finds a short straight way by which no point is left deeper than `tolerated` [m]. Directions that are tried are the

@@ -23,7 +23,7 @@ void begin_seams(const Model& model, const StepInputs& inputs, OpenWorkspace& w)
 
 namespace {
 
-// Held vertices are at their targets in both iterates; soft handles pull towards theirs.
+// Puts held vertices at their targets in both iterates, and writes the targets to which soft handles pull.
 void set_targets(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
   const bool midway = model.scheme.theta < 1;
   SUPPLE_CHECK(inputs.targets.rows(), ==, Eigen::Index(model.handled.size()));

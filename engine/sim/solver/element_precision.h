@@ -10,18 +10,19 @@
 namespace supple {
 
 // Tells whether the rule and the settings let the first search of a step begin in single precision. A step with a
-// target of error often ends after an iteration or two. Bodies with slack amplify round-off: turned copies of one that
-// hangs were 1e-3 of its size apart after 60 steps in single precision, and below 1e-5 in
-// double.
+// target of error often ends after an iteration or two. Bodies with slack (Model::has_slack) amplify round-off: turned
+// copies of one that hangs were 1e-3 of its size apart after 60 steps in single precision, and below 1e-5 in double.
 bool may_begin_in_single(const StepContext& c);
 
-// Takes single precision for the first iterate of a step where the last step began in it.
+// Chooses the precision for the first iterate of a step: single where the step before began in it, and this one may,
+// too.
 void expect_precision(const StepContext& c);
 
 // Takes single precision at the first direction of a search, where that is worth it. slope: tr(grad^T d) [J].
 void begin_in_single(const Model& model, double slope, OpenWorkspace& workspace);
 
-// Tells whether a direction that promises so little is more than the round-off of gradients of single precision.
+// Tells whether what a direction promises is well above the round-off of gradients of single precision. slope:
+// tr(grad^T d) [J].
 bool is_single_enough(const Model& model, double slope);
 
 // Goes over to double precision, and evaluates the current iterate again. Returns false where it has double precision

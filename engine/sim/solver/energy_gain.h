@@ -8,9 +8,10 @@
 
 namespace supple {
 
-// Returns the work of the elements on held vertices that were moved in a step from q to the current iterate, by the
-// forces at its end: what hard handles put in [J]. Where a held vertex has moved, evaluates all elements and overwrites
-// the workspace's trial energies and forces.
+// Returns the work that hard handles put into the body in a step from q to the current iterate [J]: that of moving held
+// vertices against the forces at the step's end, which are those of elements, bending and seams. Where a held vertex
+// has moved, evaluates the chunks of elements that have held vertices, and overwrites energies of the trial iterate and
+// the workspace's forces.
 double work_of_handles(const Model& model, const Positions& q, OpenWorkspace& workspace);
 
 // Returns the work over a step from q to the current iterate that hard handles, contacts and air do on the body, by the

@@ -49,9 +49,9 @@ double error_of(double left, double gained) { return left > 0 ? left / (std::max
 
 namespace {
 
-// Finds how far the contacts' energy alone is above g of the last iterate, if the body had gone to y [J]. An impact
-// ends the first iterate before y, where g is not evaluated; but y lies deep in the collider, and equation 12 counts
-// from y. The energy of the elements at y is left out.
+// Returns how far the energy of the contacts alone would be above g of the last iterate, if the body had gone to y [J];
+// 0 where nothing may touch. An impact ends the first iterate before y, where g is not evaluated; but y lies deep in
+// what is hit, and equation 12 counts from y. The energy of the elements at y is left out.
 double below_prediction(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
   if (!may_touch(inputs) || w.report.failed) return 0;
   w.trial.x.topRows(model.free) = w.y.topRows(model.free);
@@ -61,7 +61,7 @@ double below_prediction(const Model& model, const StepInputs& inputs, OpenWorksp
 
 }  // namespace
 
-// A contact that is found on the way raises g; this does not lessen what the searches gained.
+// Contacts that are found on the way may raise g in an iteration; this takes nothing from what other iterations gained.
 double gained_in_all(const Model& model, const StepInputs& inputs, OpenWorkspace& w, double gained) {
   double searched = 0;
   for (const IterationRecord& iteration : w.report.records) searched += std::max(0.0, iteration.decrease);
@@ -87,8 +87,9 @@ const Positions& way_ahead(const Model& model, const StepInputs& inputs, OpenWor
   return d;
 }
 
-// The direction's quadratic model foretells a gain of half the decrement. If the gain that is left is N times the
-// foretold one, the way that is left is sqrt(N) times the direction.
+// Returns how many times the length of the last direction is left to go. The direction's quadratic model foretells a
+// gain of half the decrement. If the gain that is left is N times the foretold one, the way that is left is sqrt(N)
+// times the direction.
 double times_ahead(const StepReport& report) {
   return std::sqrt(std::max(1.0, report.remaining_estimate / report.decrement));
 }
@@ -136,7 +137,8 @@ const Positions& longest_way(const Model& model, OpenWorkspace& w) {
   return w.scratch;
 }
 
-// Returns the estimate between that by the way ahead and the most that can be left.
+// Returns the estimate between the one by the way ahead and the most that can be left. weight: that of the logarithm of
+// the most.
 double between(double ahead, double most, double weight) {
   return ahead > 0 && most > ahead ? ahead * std::pow(most / ahead, weight) : ahead;
 }

@@ -15,9 +15,9 @@ class Decrements {
   // Adds an iteration: the decrement where it began, and by how much it lowered g.
   void add(double decrement, double gained);
 
-  // Estimates what is left to gain at an iterate with this decrement. Compared with each of the last four decrements,
-  // it foretells a gain; the estimate is the geometric mean of these, but at least the decrement itself. Before the
-  // first iteration, it is the decrement.
+  // Estimates what is left to gain at an iterate with this decrement. Its comparison with each of the last four
+  // decrements foretells a gain; the estimate is the geometric mean of these gains, but at least the decrement itself.
+  // Before the first iteration, the estimate is the decrement.
   double left(double decrement) const;
 
  private:
@@ -41,20 +41,20 @@ double error_of(double left, double gained);
 // is known to have been gained before. All in J. Overwrites the trial iterate.
 double gained_in_all(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, double gained);
 
-// Estimates the error of equation 12 at the end of a step. gained: the step's gain so far [J]. A body at rest has next
-// to nothing to gain: a rest that is lost in the round-off of g is then no error, however large its share is.
-// Overwrites the trial iterate.
+// Estimates the error of equation 12 at the end of a step. gained: the step's gain so far [J]. What is left but lost in
+// the round-off of g is no error, however large its share is: a body at rest has next to nothing to gain. Overwrites
+// the trial iterate.
 double error_at_end(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, double gained);
 
-// Estimates the error of motion (model/motion_error.h) of a step from q to the current iterate, where the direction
-// begins, from the length of that direction: it leads to the minimum of its quadratic model. On the first level alone
-// that model resists turning; the second adds what it misses. Returns 0 where the rule does not look beyond its last
-// iterate. Leaves the way in the trial iterate's gradient.
+// Estimates the error of motion (model/motion_error.h) of a step from q to the current iterate by the length of the
+// direction that begins there, which leads to the minimum of its quadratic model. With one level, this model resists
+// turning; the second level then adds what is missing. Returns 0 where the rule does not look beyond its last iterate.
+// Leaves the way in the trial iterate's gradient.
 double motion_ahead(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& workspace);
 
-// Does the same, and where the iterations go on gaining as much as before and a material is loose at rest, takes more
-// than the way ahead: what is left then is mostly motion that directions hardly show. Overwrites the trial iterate and
-// the workspace's scratch.
+// Does the same, but returns more where the iterations go on gaining as much as before and a material is loose at rest,
+// because what is left then is mostly motion that directions hardly show. Overwrites the trial iterate and the
+// workspace's scratch.
 double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& workspace);
 
 // Writes these estimates to the report, for all of a step and for each part of a model of several.

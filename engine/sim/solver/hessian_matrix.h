@@ -24,7 +24,7 @@ class HessianMatrix : public ElasticHessian {
   // projected first.
   void assemble(const Model& model, OpenWorkspace& workspace, bool project);
 
-  // Adds a stiffness against motions of a point between vertices [N/m].
+  // Adds a stiffness against motions of the point, or of the difference of two points, that a stencil describes [N/m].
   void add_stiffness(const ContactStencil& stencil, const Mat3& stiffness);
 
  private:

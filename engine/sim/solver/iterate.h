@@ -14,10 +14,10 @@ struct Iterate {
   Positions gradient;             // of g, n_free x 3 [N]
   AlignedVector<double> energy;   // of the elements, by lane [J]
   Positions bent;                 // forces of bending, n_free x 3 [N]; empty without bending
-  std::vector<double> curved;     // energies of RestCurvature, by triangle [J]; empty without such cloth
-  std::vector<Contact> contacts;  // found at x, or so near it that they were kept; empty without colliders
-  double moved = 0;               // no vertex has moved further since they were found [m]
-  bool keeps_contacts = false;    // a trial iterate has those of the current one, which holds them until it is left
+  std::vector<double> curved;     // energies of RestCurvature, by triangle [J]; empty without cloth curved at rest
+  std::vector<Contact> contacts;  // found at x, or so near it that they were kept; empty where nothing may touch
+  double moved = 0;               // no vertex has moved further since the contacts were found [m]
+  bool keeps_contacts = false;    // whether this trial iterate is to take over the contacts that the current one holds
   double g = 0;                   // the objective at x, with these contacts [J]
   double elastic = 0;             // the share in g of the elements [J]; not finite: not known
 };

@@ -209,7 +209,7 @@ FoundDirection Iterations::find_direction(const SearchLimits& limits) {
 }
 
 // Sets the direction at the current iterate, and estimates what is left there. Returns false where the search ends
-// because it promises too little, or failed.
+// because the direction promises too little, or because the step has failed.
 bool Iterations::has_direction(const SearchLimits& limits) {
   StepReport& report = w_.report;
   const FoundDirection descent = find_direction(limits);

@@ -47,7 +47,7 @@ inline SearchOrigin origin_of(const StepContext& c) { return {&c.state.x, c.abov
 
 // Tells what a direction promises.
 struct FoundDirection {
-  bool done = false;  // nothing that is worth a search
+  bool done = false;  // nothing is left that is worth a search
   double slope = 0;   // tr(grad^T d) [J]
 };
 
@@ -93,7 +93,7 @@ SearchEnd run_search(const Model& model, const StepInputs& inputs, OpenWorkspace
                      const SearchLimits& limits, const SearchOrigin& origin = {});
 
 // Minimises g from workspace.current.x; adds to the report's decrease, and sets its slope and stop reason. Also stops
-// once a direction promises less than `enough` [J]. It serves references.
+// once a direction promises less than `enough` [J]. These functions serve references and first_forces.h.
 void minimize(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, double enough = 0);
 void minimize(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, SearchRule& rule,
               double enough = 0);

@@ -53,7 +53,7 @@ double along_pair(const StiffDirection& stiff, const double* step) {
   return mean.dot(stiff.axis);
 }
 
-// Holds the share in all pairs of the contacts in force, t_i += K s_i.
+// Holds what the contacts in force add to all pairs, t_i += K s_i.
 class ContactPairs {
  public:
   ContactPairs(const Model& model, OpenWorkspace& w, const Pointers& s, int count) : correction_(w.correction) {
@@ -227,7 +227,7 @@ void SystemInverse::apply(const Model& model, const StepInputs& inputs, OpenWork
     apply_inverse(model, inputs.solver.contact, w.correction, w.solve_scratch, right, solution);
   };
   if (w.air.fixed_amounts() == 0) return solve(r, z);
-  // A solve may take directions out of the list of contacts, which the last one is to find whole.
+  // A solve may take directions out of `wanted`, and the last solve is to find all of them there.
   const std::vector<StiffDirection> wanted = w.correction.wanted;
   w.gas.begin(model, w.air, w.current.x, [&](Positions& right, Positions& solution) {
     w.correction.wanted = wanted;

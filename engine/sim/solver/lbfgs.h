@@ -9,7 +9,7 @@
 
 namespace supple {
 
-// Tells where the pairs (s, t) kept so far are in the workspace's ring. It is reset for each step.
+// Tells where the pairs (s, t) kept so far are in the workspace's ring. The history is reset for each search.
 struct PairHistory {
   int window = 0;
   int count = 0;
@@ -40,8 +40,7 @@ class InitialInverse {
   virtual bool measures_last_iterate() const { return false; }
   // Does what SearchRule::forget does, once no pairs are left.
   virtual bool forget() { return false; }
-  // This is called after the recursion. It may correct workspace.direction for contacts that it would cross, and
-  // returns whether it did.
+  // Corrects workspace.direction, after the recursion, for contacts that it would cross; returns whether it did so.
   virtual bool bend(const Model&, const StepInputs&, OpenWorkspace&) { return false; }
 };
 

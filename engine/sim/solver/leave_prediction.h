@@ -1,9 +1,10 @@
-// Moves the first iterate away from y where handles or turning make y a bad one. The paper starts from y. With rows
-// eliminated, y tears the elements beside a handle apart by all that the handle did not do freely (its keyed motion,
-// and the fall that it did not take), often by more than their size; and where parts turn fast, y stretches them,
-// because velocities are straight. A remedy costs nothing where no handle departs from y and nothing turns. Otherwise
-// it costs a solve, and one evaluation, because y stays the first iterate where y is better. What starting from y cost
-// in earlier films is in docs/lab/2026-11-22-films-of-the-paper.md ("Error of the polynomial head").
+// Moves the first iterate away from y where handles or turning make y a bad one. The paper starts from y. With the rows
+// of held vertices eliminated, y tears the elements beside a handle apart by all that the handle did not do freely (its
+// keyed motion, and the fall that it did not take), often by more than their size; and where parts turn fast, y
+// stretches them, because velocities are straight. A remedy costs nothing where no handle departs from y and nothing
+// turns. Otherwise it costs a solve, and one evaluation, because y stays the first iterate where y is better. What
+// starting from y cost in earlier films is in docs/lab/2026-11-22-films-of-the-paper.md ("Error of the polynomial
+// head").
 #pragma once
 
 #include "sim/solver/step_context.h"
@@ -32,7 +33,7 @@ void turn_with_handles(StepContext& c);
 // Tells whether y, with the handles at their targets, is better than the iterate that was put in its place.
 bool is_worse_than_prediction(const StepContext& c);
 
-// Puts the first iterate back to y, not yet evaluated there as an iterate.
+// Puts the first iterate back to y, where it is still to be evaluated.
 void return_to_prediction(StepContext& c);
 
 }  // namespace supple

@@ -21,7 +21,7 @@ bool decreases_by_slope(const Change& change, double slope, double armijo, doubl
   return change.value <= noise && change.slope <= (2 * armijo - 1) * slope;
 }
 
-// Finds the contacts at the trial point, which was accepted with the planes of the search. They are kept unless they
+// Finds the contacts at the trial point, which was accepted with the planes of the search. Returns false where they
 // make the point worse than where the search began; the search could not know of them. Friction, whose normal forces
 // are lagged, does not count here.
 bool contacts_accept(const Model& model, const StepInputs& inputs, OpenWorkspace& w, double change, double noise) {
@@ -67,7 +67,7 @@ Search search_line(const Model& model, const StepInputs& inputs, OpenWorkspace& 
       change.value = 0.5 * alpha * (slope + change.slope);  // nearer than values can tell
     if (contacts_accept(model, inputs, w, change.value, noise)) return Search::found;
     if (refused == 0 && may_learn && learn_contacts(model, inputs, w)) return Search::unforeseen;
-    // A shorter step helps against contacts of which the current iterate can't learn, but not where the energy itself
+    // A shorter step helps against contacts of which the current iterate cannot learn, but not where the energy itself
     // jumps (a vertex that passes an edge).
     if (++refused == most_refusals) return Search::worse;
   }

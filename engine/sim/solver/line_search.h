@@ -10,15 +10,14 @@ enum class Search {
   found,
   worse,  // a point was found, but contacts that the current iterate could not learn make it worse
   failed,
-  unforeseen,  // contacts lay on the way, which the current iterate knows now: another direction is needed
+  unforeseen,  // contacts lay on the way; the current iterate knows them now, so that another direction is needed
   exhausted,   // what the direction promises is below what the gradient's own round-off decides
 };
 
 // Searches from the current iterate along workspace.direction (with this slope [J]) by Armijo's backtracking. Leaves
 // the accepted point in workspace.trial, with gradient and energies by the contacts of the current iterate and, in its
 // contacts, those found there. may_learn: whether the search may end as `unforeseen` (learn_contacts()); otherwise
-// steps become shorter. `record` gets the step length and the results of the full
-// step.
+// steps become shorter. `record` gets the step length and the results of the full step.
 Search search_line(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, double slope, bool may_learn,
                    Change& change, IterationRecord& record);
 

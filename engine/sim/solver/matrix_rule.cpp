@@ -14,9 +14,10 @@ namespace {
 constexpr double most_departure = 0.1;
 constexpr TangentShares shares{};
 
-// The progress of the turned Hessian's directions tells better than its departure how good it still is. It is poor
-// where an evaluation brings less progress than one from A, and worn where an evaluation reduces the error by less than
-// this factor. Beyond most_departure_of_hessian, it is not even tried.
+// The progress of the turned Hessian's directions tells better than the Hessian's departure how good it still is.
+// Progress is the factor to which one evaluation reduces the error, so that less is better. The Hessian is poor where
+// its progress is above that of A, or its departure above most_departure_of_hessian; it is worn where its progress is
+// above worn_progress.
 constexpr double worn_progress = 0.1;
 constexpr double usual_progress = 0.25;  // progress of A, where A has not served lately
 constexpr double forgetting = 0.1;       // share of A's progress that is forgotten in each step that A does not serve
@@ -43,7 +44,8 @@ int least_age(const Model& model, const TurnedHessianSystem& hessian) {
   return static_cast<int>(std::ceil(hessian.renewal_cost(model) / (share_of_renewals * evaluations_a_step)));
 }
 
-// Makes the turned Hessian in the same way. A serves, too, where it is poor and too young to be renewed.
+// Makes the turned Hessian in the same way. Also returns false, so that A serves, where the Hessian is poor and too
+// young to be renewed.
 bool make_turned_hessian(const Model& model, const SolverMemory& memory, OpenWorkspace& w) {
   if (memory.matrix_made_at.rows() == model.vertices &&
       w.turned_hessian.make(model, memory.matrix_made_at, w.threads)) {

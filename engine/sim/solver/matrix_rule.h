@@ -20,8 +20,8 @@ void put_in_force(const Model& model, const StepInputs& inputs, const System& sy
 // Sets workspace.system for a step from `state`: A, or a matrix that follows the body. To be called after begin_step().
 void choose_matrix(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& workspace);
 
-// Lets the turned Hessian serve the step where the settings ask for it, the first iterate touches nothing, and one is
-// there that is good enough. To be called when workspace.current is the first iterate.
+// Lets the turned Hessian serve the step where the settings ask for it, the first iterate touches nothing and is near
+// nothing, and there is a Hessian that is good enough. To be called when workspace.current is the first iterate.
 void choose_turned_hessian(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& workspace);
 
 // Notes in the memory which matrix the step had, and how well its directions did.

@@ -42,7 +42,7 @@ SearchLimits limits_of(const StepContext& c, Hardness hardness, double gained) {
           .worse_iterate = WorseIterate::refused};
 }
 
-// Sets the gain that is left after Newton's method. before: the gain that was left before it [J].
+// Writes an estimate of what is left after Newton's method into the report. before: the gain that was left before [J].
 void estimate_what_is_left(double before, StepReport& report) {
   if (!(report.slope < 0)) {
     report.remaining_estimate = before;  // no direction led downhill

@@ -7,10 +7,11 @@
 
 namespace supple {
 
-// Tells whether Newton's method finishes this body's hard steps. It does not where a direction would cost more than 200
-// evaluations (from about 7,000 vertices); nor for a body of springs alone, where compressed springs leave the
-// projected Hessian without stiffness across them, so that its directions are too long (a sheet on bars took 108 trials
-// a step, and gained energy).
+// Tells whether Newton's method finishes this body's hard steps: where the settings let it, the body makes its step
+// alone by backward Euler, and time has no bound. It does not where a direction would cost more than 200 evaluations
+// (from about 7,000 vertices), nor for a body without tetrahedra: compressed springs leave the projected Hessian
+// without stiffness across them, so that its directions are too long (a sheet on bars took 108 trials a step, and
+// gained energy).
 bool may_finish_by_newton(const Model& model, const StepInputs& inputs);
 
 // Returns how many points the line searches of a search with so many iterations may try before it gives up, because

@@ -15,7 +15,7 @@ struct NewtonSystem::Parts {
   std::uint64_t structure;
   HessianMatrix hessian;
   ChangingFactor factor;
-  std::vector<Mat3> stiffness;  // by contact of the current iterate, with those that are held ahead [N/m]
+  std::vector<Mat3> stiffness;  // by contact of the current iterate, with that of planes ahead that were added [N/m]
   Positions right, pushed;      // n_free x 3 [N]
 
   explicit Parts(const Model& of) : structure(of.structure), hessian(of), factor(of.factor.precision()) {

@@ -32,15 +32,16 @@ double quadratic_value(double weight, const double* point, const double* center)
   return 0.5 * weight * sum;
 }
 
-// Computes one vertex' share of w M/h^2, handles' springs and damping.
+// Computes one vertex's share of g: of inertia, handles' springs, damping and bending.
 struct VertexTerms {
   const Model& model;
   const OpenWorkspace& w;
   const double* point;
   const double* reference;  // or null
-  double inertia;           // w / h^2 [1/s^2]
+  double inertia;           // the time scheme's factor of inertia over h^2 [1/s^2]
   bool springs, damped;
   // Where the elastic energy is evaluated for the point, and for the reference: the same, or the middle of the step.
+  // Null without bending.
   const double* place;
   const double* reference_place;  // or null
   double* bent;                   // takes the forces of bending
@@ -64,7 +65,7 @@ struct VertexTerms {
     }
   }
 
-  // Adds the gradient; returns the value, or its difference from the reference's.
+  // Writes the vertex's gradient; returns the value, or its difference from the reference's.
   double add(int v, double (&gradient)[3]) const {
     const std::size_t at = 3 * std::size_t(v);
     const double *p = point + at, *y = w.y.data() + at, *r = reference != nullptr ? reference + at : nullptr;
@@ -92,7 +93,7 @@ struct VertexTerms {
   }
 
  private:
-  // Adds the forces of bending that evaluate_bending() has found. They need no factor, because e theta = 1.
+  // Adds the forces of bending that evaluate_bent() has found. They need no factor, because e theta = 1.
   void add_curvature(int v, double (&gradient)[3]) const {
     double slope[3];
     curvature_slope(model.curvature, w.curvature, v, slope);

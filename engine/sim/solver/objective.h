@@ -43,11 +43,11 @@ double single_noise_of(const Model& model, double elastic);
 // Returns the share of inertia in g at x, sum of w m |x - y|^2 / (2 h^2), where w is the integrator's weight [J].
 double inertial_energy(const Model& model, const OpenWorkspace& workspace, const Positions& x);
 
-// Returns E(x) of all elements [J]. Overwrites the energies of the trial iterate.
+// Returns E(x) of all elements and of bending [J]. Overwrites the energies of the trial iterate.
 double elastic_energy(const Model& model, OpenWorkspace& workspace, const Positions& x);
 
-// Returns the work of the elements' forces at x on held vertices along their ways from q [J]. Evaluates the chunks that
-// have such vertices alone; overwrites energies of the trial iterate.
+// Returns the work that moves held vertices along their ways from q, against the forces of elements, bending and seams
+// at x [J]. Evaluates the chunks of elements that have such vertices alone; overwrites energies of the trial iterate.
 double work_on_held(const Model& model, OpenWorkspace& workspace, const Positions& x, const Positions& q);
 
 }  // namespace supple

@@ -32,9 +32,10 @@ struct OpenWorkspace {
   Positions y;                                 // inertial prediction, n x 3 [m]
   const Positions* start_positions = nullptr;  // q, where the step starts: the caller's, n x 3 [m]
   Positions start_copy;                        // a copy of q, n x 3 [m]; empty unless the model's forces depend on q
-  AirForces air;                               // of the step; without any where StepInputs::air is empty
-  Positions target;     // targets of soft handles, by free vertex, n_free x 3 [m]; empty without soft handles
-  Positions seam_gaps;  // what the seams' places are meant to be apart where forces are evaluated, pairs x 3 [m]
+  AirForces air;                               // forces of air and gas in the step; none where StepInputs::air is empty
+  Positions target;  // targets of soft handles, by free vertex, n_free x 3 [m]; empty without soft handles
+  // How far apart the places that seams join are meant to be where forces are evaluated, pairs x 3 [m].
+  Positions seam_gaps;
 
   // The solver is at the current iterate, and tries the trial iterate.
   Iterate current, trial;
@@ -52,7 +53,7 @@ struct OpenWorkspace {
   TurnedHessianSystem turned_hessian;
   bool turned_hessian_serves = false;
   Positions next_matrix_at;  // q + h v, where a matrix is made if this step makes one, n x 3 [m]
-  bool renewed = false;      // this step made one
+  bool renewed = false;      // whether this step made one
 
   // The second level of directions, and the arcs by which parts of the body turn; empty until a step asks for them.
   SecondLevel second_level;
@@ -60,9 +61,9 @@ struct OpenWorkspace {
   Turning turning;
   Positions motion;       // h v, n x 3 [m]
   Positions turned;       // how the turning parts depart from q + h v, n_free x 3 [m]
-  bool turns = false;     // parts turn so much that the first iterates have `turned` in them
+  bool turns = false;     // whether parts turn so much that the first iterates have `turned` in them
   Positions bow;          // how the present search departs from its straight direction, n_free x 3 [m]
-  bool is_bowed = false;  // the present search has such an arc
+  bool is_bowed = false;  // whether the present search has such an arc
 
   NewtonSystem newton;  // empty until Newton's method finishes a step
 
@@ -76,7 +77,7 @@ struct OpenWorkspace {
 
   // The following members are memory within one call and hold nothing between calls.
   Positions middle;             // where forces are evaluated, n x 3 [m]; empty where that is the iterate itself
-  Positions reference_middle;   // the same for the iterate that a trial is compared with; empty without bending
+  Positions reference_middle;   // the same for the current iterate; empty without bending and seams
   CurvatureRoom curvature;      // forces of cloth that is curved at rest
   Positions scratch;            // n_free x 3
   AlignedVector<double> force;  // by slot, x list_stride [N]

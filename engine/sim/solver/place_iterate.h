@@ -6,7 +6,7 @@
 
 namespace supple {
 
-// Finds the contacts of an iterate; does nothing without colliders.
+// Finds the contacts of an iterate; does nothing where nothing may touch.
 void find_contacts_of(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, Iterate& iterate);
 
 // Finds the contacts of the trial iterate. Where no vertex has moved far since those of the current one were found,
@@ -22,8 +22,8 @@ void forget_start(OpenWorkspace& workspace);
 // Moves the free vertices of a part by a rigid motion.
 void move_rigidly(const Part& part, const Eigen::Isometry3d& motion, Positions& x);
 
-// Sets workspace.trial.x = x + alpha d for the free vertices, bent by the search's arc where it has one; handled ones
-// stay at their targets.
+// Sets workspace.trial.x = x + alpha d for the free vertices, bent by the search's arc where it has one; held ones stay
+// at their targets.
 void set_trial(const Model& model, OpenWorkspace& workspace, double alpha);
 
 }  // namespace supple

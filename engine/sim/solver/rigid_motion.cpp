@@ -22,7 +22,7 @@ class Weights {
 
  private:
   const Model& model_;
-  double held_;  // of one that a handle holds [kg]
+  double held_;  // the weight of a vertex that a handle holds [kg]
 };
 
 // Returns the smallest of the vectors that a symmetric matrix takes nearest to `right`. Vertices in one line do not

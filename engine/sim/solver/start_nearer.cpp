@@ -26,7 +26,8 @@ bool is_still(const StepContext& c, const Part& part) {
 bool is_between_vertices(const Contact& contact) { return contact.depth > 0 && !contact.stencil.is_vertex(); }
 
 // Sets the trial iterate to the current one, and calls move(part) for each part that is to be moved there: for the only
-// part, or for those of several that have such a contact or of which `also(part)` is true.
+// part or, of several, for those with a contact of which counts(contact) is true, and those of which also(part) is
+// true.
 template <class Counts, class Also, class Move>
 void set_trial_by_parts(const StepContext& c, const Counts& counts, const Also& also, const Move& move) {
   const Model& model = c.model;

@@ -1,8 +1,8 @@
-// Makes a step: this file shows what is tried in which order, and when. step() at its end begins with the prediction y
-// and the targets of handles (begin_step), chooses the matrix of directions (matrix_rule.h), the first iterate (its
-// candidates are listed in first_iterate.cpp), makes the searches (make_searches), and takes the answer into the state.
-// The report's iterations and decrease are sums over all searches; its stop reason, slope and decrement are those of
-// the last one.
+// Makes a step: this file shows what is tried in which order, and when. step(), at the end of the file, begins with the
+// prediction y and the targets of handles (begin_step), chooses the matrix of directions (matrix_rule.h) and the first
+// iterate (its candidates are listed in first_iterate.cpp), makes the searches (make_searches), and takes the answer
+// into the state. The report's iterations and decrease are sums over all searches; its stop reason, slope and decrement
+// are those of the last one.
 #include "sim/solver/step.h"
 
 #include <limits>

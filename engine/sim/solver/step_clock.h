@@ -45,8 +45,8 @@ class StepClock {
   std::array<Clock::duration, 6> spent_{};
 };
 
-// Counts the time of a scope for a phase, except for that of such scopes inside it, and makes a zone of the trace of
-// it. When it ends, the phase around it continues.
+// Counts the time of a scope for a phase, except for that of such scopes inside it, and makes the scope a zone of the
+// trace. When the scope ends, the phase around it continues.
 class TimedPhase {
  public:
   TimedPhase(StepClock& clock, Phase phase, const char* zone)

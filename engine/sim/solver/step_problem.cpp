@@ -23,7 +23,7 @@ StepProblem problem_of(const BodyDescription& body, const Model& model, const St
   problem.hash = state_hash(model, state);
   problem.began_in_single = state.memory.began_in_single;
   problem.solver = inputs.solver;
-  std::vector<Eigen::Index> rows;  // of targets, without those of handles that have let go
+  std::vector<Eigen::Index> rows;  // those of `targets` whose handles hold
   for (std::size_t i = 0; i < model.handled.size(); ++i) {
     const Handle& handle = body.handles[model.handled[i].handle];
     if (!handle.holds) continue;

@@ -1,6 +1,6 @@
-// Describes the problem of one step alone: all on which g of equation 3 depends, before anything touches a collider and
-// without air and gas, in the order of the input file instead of the model's. It serves comparisons of solvers on
-// stored states, and other programs. Not here: files (film/record/state_file.h).
+// Describes the problem of one step alone: all on which g of equation 3 depends, without contact, air and gas, in the
+// order of the input file instead of the model's. It serves comparisons of solvers on stored states, and other
+// programs. Not here: files (film/record/state_file.h).
 #pragma once
 
 #include "sim/model/inputs.h"
@@ -28,7 +28,8 @@ struct StepProblem {
   Positions targets;         // at the end of the step, by `handled` [m]
   Positions middle_targets;  // halfway, where implicit midpoint's springs end [m]; empty for backward Euler
 
-  // With their stiffness, and with the gap that is meant where the step evaluates forces in place of that at the start.
+  // The pairs that seams join, with their stiffness. `gap` is the one that is meant where the step evaluates forces,
+  // not that at the start.
   std::vector<SeamPair> seams;
 
   struct Obstacle {

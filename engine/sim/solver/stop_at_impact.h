@@ -11,9 +11,9 @@ namespace supple {
 std::vector<Impact> find_impacts(const StepContext& c);
 
 // Lets each part go only as far as its impact and a little further. If the collider moves, the part then goes on with
-// it: at the end of the step, it lies before the collider as it would if the same impact were seen from the collider.
-// To go on with the collider is not better for a body that is held, or that is carried into another collider, so the
-// lower objective decides. The new first iterate is not evaluated yet.
+// it: at the end of the step, it lies before the collider as it would if the same impact were seen from the collider. A
+// body that is held, or that would be carried into another collider, may be better off where it stops, so the lower
+// objective decides. The new first iterate is not evaluated yet.
 void stop_at_impacts(StepContext& c, const std::vector<Impact>& impacts);
 
 }  // namespace supple

@@ -10,8 +10,8 @@
 
 namespace supple {
 
-// Tells when a search has to end, and notes after how many iterations in the report, so that a later run can end there
-// without a clock.
+// Tells when a search has to end, and notes in the report how many iterations it has made until then, so that a later
+// run can end the search there without a clock.
 class TimeBudget {
  public:
   enum Which { from_first_iterate, from_staying };
@@ -41,7 +41,8 @@ class TimeBudget {
   double limit_ms_, last_ms_ = 0, longest_ms_ = 0;
   const OpenWorkspace& w_;
   int& cut_;
-  std::optional<int> repeated_;  // -1: the earlier run's budget did not end this search
+  // The number of iterations after which the earlier run's search was ended; -1: its budget did not end it.
+  std::optional<int> repeated_;
 };
 
 }  // namespace supple

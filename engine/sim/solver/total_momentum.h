@@ -8,7 +8,7 @@
 
 namespace supple {
 
-// Tells whether nothing holds, stops or drags the parts of a joined model from outside.
+// Tells whether nothing holds, stops or drags the parts of a joined model from outside; false for a body alone.
 bool is_isolated(const Model& model, const OpenWorkspace& w, const std::vector<Contact>& contacts);
 
 // Shifts all free vertices, so that their common centre of mass is that of y.

@@ -35,7 +35,7 @@ bool learn_contacts(const Model& model, const StepInputs& inputs, OpenWorkspace&
   const std::vector<Contact> before = at.contacts;
   const double moved = at.moved;
   find_contacts_of(model, inputs, w, at);
-  at.moved = moved;  // those of before stay
+  at.moved = moved;  // since the contacts of before were found, which stay
   std::vector<Contact> more;
   for (const Contact& contact : at.contacts) {
     if (!contact.stencil.is_vertex() && find_same(model, before, contact) == nullptr) more.push_back(contact);
