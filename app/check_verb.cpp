@@ -36,7 +36,7 @@ struct Checked {
   Script script;
   std::vector<Body> bodies;
   std::vector<DrawnBody> drawn;
-  std::vector<std::string> missing;  // in the pictures of a rough first pass
+  std::vector<std::string> missing;  // what is missing in the pictures of a rough first pass
 };
 
 Checked read_all(const CheckCommand& command) {

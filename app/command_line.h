@@ -36,7 +36,7 @@ class Option {
   Option& needs(const Option& other);
   Option& excludes(const Option& other);
   Option& excludes(const std::vector<std::string>& names);  // of options that have been added
-  Option& shows_default();                                  // --help tells what the variable holds now
+  Option& shows_default();                                  // --help tells what the variable holds at this call
 
  private:
   CLI::Option* option_;
@@ -82,10 +82,10 @@ class Verb : public Options {
 
 // Describes an option or a positional argument: its names and the values that it takes.
 struct DescribedOption {
-  std::vector<std::string> names;  // with their dashes; of a place its name
-  bool place = false;
+  std::vector<std::string> names;  // with their dashes; of a positional argument its name
+  bool place = false;              // whether it is a positional argument
   bool takes_value = false;
-  bool offered = true;               // when the shell asks; an option of a group is not
+  bool offered = true;               // whether the shell offers it; options of a group are not offered
   std::vector<std::string> choices;  // of its value; empty: anything
 };
 struct DescribedVerb {

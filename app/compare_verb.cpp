@@ -79,7 +79,8 @@ std::string differences_text(const RunComparison& c) {
   return text;
 }
 
-// Times are compared where both runs have the same bodies: of all of them at once, or else of each that both have.
+// Compares the times of steps: those of all bodies together where both runs have the same bodies, and otherwise those
+// of each body that both have.
 std::string times_text(const RunComparison& c) {
   const auto line = [](const std::string& what, double a, double b) {
     return fmt::format("  {:<16}{:.3f} ms in A, {:.3f} ms in B: B takes {:.3f} times as long\n", what, a, b, b / a);
@@ -90,7 +91,8 @@ std::string times_text(const RunComparison& c) {
   return text;
 }
 
-// Tells of clocks that do not agree, as those of a run and of one that goes on from its middle; empty where they do.
+// Returns the line about clocks that do not agree, as those of a run and of one that goes on from its middle; empty
+// where they do.
 std::string clock_text(const RunRecord& a, const RunRecord& b) {
   if (a.rows.empty() || b.rows.empty() || a.rows.front().time_s == b.rows.front().time_s) return "";
   return fmt::format(
@@ -155,7 +157,8 @@ std::string csv_of(const RunComparison& c) {
   return csv_text(records);
 }
 
-// Exit status 1 means here that the runs differ, so a file that cannot be written is reported as wrong input.
+// Writes the distances. A file that cannot be written is reported as wrong input, because exit status 1 means that the
+// runs differ.
 void write_csv(const std::string& file, const RunComparison& comparison) {
   try {
     write_whole_file(file, csv_of(comparison));

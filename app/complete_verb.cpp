@@ -48,7 +48,7 @@ WordList fitting(const CommandLine& all, const WordList& line) {
   }
   const auto verb = std::ranges::find(verbs, line.front(), &DescribedVerb::name);
   if (verb == verbs.end()) return words;
-  std::size_t place = 0;  // of positional words before the last
+  std::size_t place = 0;  // the number of positional words before the last
   for (std::size_t i = 1; i + 1 < line.size(); ++i) {
     const DescribedOption* option = option_named(*verb, line[i]);
     if (option == nullptr) {

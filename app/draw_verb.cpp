@@ -36,8 +36,8 @@ struct DrawCommand {
   DrawPlan plan;
   std::vector<std::string> runs;
   std::string run, scene, out, still;
-  std::string size, field, range, reference;  // short forms of settings
-  std::vector<std::string> passes;            // the same
+  std::string size, field, range, reference;  // short forms of settings, as are the passes
+  std::vector<std::string> passes;
   std::optional<std::size_t> frame, index;
   int of = 1, jobs = 1;
   bool merge = false, skins = false, sheet = false, quiet = false;
@@ -52,7 +52,7 @@ struct DrawCommand {
   }
 };
 
-// Reads --rate. Slow motion of a quick process may need few pictures a second of it, and no player shows a thousand.
+// Reads --rate. A film of slow motion may have few pictures a second, and no player shows a thousand.
 FrameRate rate_asked_for(const std::string& text) {
   constexpr double lowest = 0.01, highest = 1000;
   const std::optional<FrameRate> rate = FrameRate::parse(text);
@@ -229,7 +229,7 @@ int write_skin_files(const DrawCommand& command, LoadedDrawing& drawing) {
   return 0;
 }
 
-// Writes what has an option of its own as settings. They stand before the others, which may therefore differ.
+// Turns short forms into settings. They stand before those of --set, which override them.
 void add_short_forms(DrawCommand& command) {
   std::vector<std::string> settings;
   const auto quoted = [](const std::string& text) { return "\"" + text + "\""; };
@@ -245,7 +245,7 @@ void add_short_forms(DrawCommand& command) {
   ask_for_passes(command.passes, all);
 }
 
-// Draws one frame of several runs side by side, by way of a folder beside the picture, which does not stay.
+// Draws one frame of several runs side by side, in a folder beside the picture that is removed afterwards.
 int draw_several_once(const DrawCommand& command) {
   const auto frame = static_cast<int>(*command.frame);
   const std::filesystem::path file = command.still.empty() ? fmt::format("frame-{:06}.png", frame) : command.still;
@@ -303,7 +303,7 @@ int draw(DrawCommand command) {
     say(stderr, fmt::format("warning: {}\n", letters->text()));
   if (command.skins) return write_skin_files(command, drawing);
   if (command.frame || !command.still.empty()) return draw_one(command, drawing);
-  coding_of(command, drawing);  // is refused before the folder is changed
+  coding_of(command, drawing);  // refuses a wrong one before the folder is changed
   const bool is_part = command.index || command.merge;
   FolderLock lock(command.folder(), is_part ? FolderUse::with_others : FolderUse::alone);
   open_drawing(command.folder(), drawing, is_part);

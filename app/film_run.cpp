@@ -60,13 +60,13 @@ void say_bodies(const RunInfo& info) {
         fmt::format("{}: {} vertices, {} elements ({})\n", mesh.body, mesh.vertices, mesh.elements, mesh.source));
 }
 
-// Tells in which folder the run goes, where that is not as a user may expect. Another folder than the one that was
-// asked for is told even where nothing else is.
+// Says into which folder the run goes where a user may expect another one. Where it is not the folder that was asked
+// for, this is said with --quiet too.
 void say_place(const FilmPlan& plan, const RunPlace& place) {
   if (!place.note.empty() && (!plan.quiet || !place.is_as_asked)) say(stderr, fmt::format("note: {}\n", place.note));
 }
 
-// Tells what the film's format cannot hold, which concerns what the film shows.
+// Warns of what the film's format cannot hold: with --quiet too, because this concerns what the film shows.
 void say_coding(const FilmPlan& plan, const SceneDef& scene) {
   if (!plan.wants_video()) return;
   for (const std::string& warning :
@@ -176,7 +176,7 @@ void add_film_options(Verb& verb, FilmCommand& command, const std::string& folde
   add_size_option(verb, plan.size, "the scene's");
   verb.option("--frames", plan.frames, "length of the film, over the scene's").between(1, 1000000);
   const auto take_from = [&plan](const std::string& run) {
-    if (run.empty()) throw InputError("--from", "names no folder");  // as of a shell's variable that is not set
+    if (run.empty()) throw InputError("--from", "names no folder");  // as by a shell's variable that is not set
     plan.from = run;
   };
   const Option from = verb.option("--from", take_from,

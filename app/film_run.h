@@ -1,5 +1,5 @@
-// Makes a film from the command line, up to its folder, with messages on the terminal. The verbs that run a scene share
-// this. Not here: the film itself (film/film.h).
+// Makes the film that a command line asks for, with its folder, and with messages on the terminal. The verbs that run a
+// scene share this. Not here: the film itself (film/film.h).
 #pragma once
 
 #include <string>
@@ -34,7 +34,8 @@ void add_size_option(Verb& verb, std::string& size, const std::string& usual);
 // Adds the options of a film's file.
 void add_coding_options(Verb& verb, FilmCoding& coding);
 
-// Adds the option of the film's passes, and puts them before settings, which may differ.
+// The first adds the option of the film's passes. The second puts the passes that it names before the other settings,
+// which override them.
 void add_passes_option(Verb& verb, std::vector<std::string>& passes);
 void ask_for_passes(const std::vector<std::string>& passes, std::vector<std::string>& settings);
 
@@ -44,8 +45,9 @@ void go_on(const FilmPlan& plan, LoadedFilm& film);
 // Prints warnings of the scene, and the notes from reading meshes.
 void say_remarks(const FilmPlan& plan, const LoadedFilm& film);
 
-// Opens a scene by the name that the command line gives. The text of one that is not in a file is read, or made of a
-// model, whose notes are printed unless this should be quiet, or the settings make them untrue. Throws InputError.
+// Opens a scene by the name that the command line gives. The text of a scene on standard input is read, and that of a
+// model's scene is made. Notes on the model are printed, unless `quiet`, and except those that the settings make
+// untrue. Throws InputError.
 SceneSource opened_scene(const std::string& name, const std::vector<std::string>& settings, bool quiet);
 
 // Gives the plan the text of a scene that is not in a file. Throws InputError.

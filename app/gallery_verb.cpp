@@ -44,8 +44,8 @@ struct GalleryCommand {
 struct ListedScene {
   std::string name, title;
   std::filesystem::path file;
-  std::vector<std::string> words;          // that film it; empty where the scene cannot be read
-  std::string identity;                    // of all that its film depends on and that is cheap to know
+  std::vector<std::string> words;          // the command that films it; empty where the scene cannot be read
+  std::string identity;                    // hash of all that its film depends on and that is cheap to know
   std::optional<JobOutcome> outcome = {};  // of its film; none where this film was not tried yet
 };
 
@@ -95,7 +95,8 @@ void keep_outcome(const GalleryCommand& command, ListedScene& scene, const JobOu
   read_outcome(command, scene);
 }
 
-// Reads a scene so far that its bounds are known. A scene that is wrong is recorded as one that failed.
+// Reads a scene, and returns it with the command that films it and the outcome of its film. A scene that is wrong is
+// recorded as one that failed.
 ListedScene listed(const GalleryCommand& command, const std::filesystem::path& file) {
   ListedScene result{file.stem().string(), "", file, {}, ""};
   try {

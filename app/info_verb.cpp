@@ -33,8 +33,8 @@ void refuse_mistyped(const std::string& input) {
   if (!near.empty()) throw InputError(input, (is_run(near) ? "no such folder" : "no such file") + meant_file(near));
 }
 
-// The kind of an input follows from what is on the disk: a folder is a run, files with the endings of meshes and
-// surfaces are models, and all else is a scene.
+// Prints what is in an input. Its kind follows from what is on the disk: a folder is a run, files with the endings of
+// meshes and surfaces are models, and all else is a scene.
 int inform(const std::string& input, bool live) {
   std::error_code error;
   const std::filesystem::path path = input;

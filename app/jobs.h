@@ -1,7 +1,8 @@
-// Runs jobs: for each, this program once more in a process of its own, so many at a time. A job may keep its outcome in
-// a small JSON file, its record, which names first what the job was made with: all that its outcome depends on and that
-// is cheap to know. A job whose record says that it succeeded, with what holds now, need not be run again. Not here:
-// what a job depends on, which jobs are left, and the words about each, which their verb knows.
+// Runs jobs, several at a time: for each, this program once more in a process of its own. A job may keep its outcome in
+// a small JSON file, its record. The record also says what the job was made with: all that its outcome depends on and
+// that is cheap to know. A job need not be run again if it succeeded according to its record, and what it was made with
+// has not changed. Not here: what a job depends on, which jobs are left, and the words about each, which their verb
+// knows.
 #pragma once
 
 #include <filesystem>
@@ -37,8 +38,9 @@ struct JobList {
   std::function<void(const JobEnd& end)> on_ended;  // one thread at a time calls it
 };
 
-// Returns when all jobs have ended. An interrupt (base/interrupts.h) ends the jobs that run, and starts no more. Throws
-// RunError when the program cannot be started, and whatever the two functions throw; the jobs that run are ended first.
+// Runs the jobs, and returns when all have ended. After an interrupt (base/interrupts.h), the jobs that run are ended
+// and no more are started. Throws RunError when the program cannot be started, and whatever the two functions throw;
+// the jobs that run are ended first.
 void run_jobs(const JobList& jobs);
 
 // Holds the outcome of a job as its record has it.

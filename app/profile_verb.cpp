@@ -29,7 +29,7 @@ struct ProfileCommand {
   FilmCommand film;
   int repeats = 10;
   std::vector<std::string> compared;  // two files, or none
-  bool anyway = false;                // they may be of different settings
+  bool anyway = false;                // whether they may be of different settings
   std::string against;                // another program, which runs in turn with this one; empty: none
 };
 
@@ -145,7 +145,7 @@ std::vector<std::string> one_repeat(const std::string& program, const std::vecto
       words.push_back(word);
     }
   }
-  // They stand after the verb, and before a "--", after which no word is an option.
+  // The new words stand after the verb, and before a "--", after which no word is an option.
   words.insert(words.begin() + 2, {"--repeats", "1", "--quiet", "--out=" + folder.string()});
   return words;
 }
@@ -163,7 +163,7 @@ std::filesystem::path folder_for(const FilmPlan& plan) {
   return plan.out.empty() ? std::filesystem::path("out") / (scene.name + "-profile") : std::filesystem::path(plan.out);
 }
 
-// A repeat replaces what is in its folder. An earlier profile is there to be replaced, and a film is not.
+// Throws InputError where the folder holds a film, which a repeat would replace. An earlier profile may be replaced.
 void check_holds_no_film(const std::filesystem::path& folder) {
   std::error_code error;
   if (!std::filesystem::exists(folder / "run.json", error)) return;
@@ -241,7 +241,7 @@ int run(const ProfileCommand& request, const std::vector<std::string>& command) 
   return profile_once(placed, command);
 }
 
-// A comparison runs nothing, so the options of a run mean nothing with it.
+// Refuses the options of a run with --compare, which runs nothing.
 void check_compare_options(const Verb& verb) {
   for (const std::string& name : verb.given()) {
     if (name != "--compare" && name != "--anyway" && name != "--json" && name != "--quiet")

@@ -18,7 +18,7 @@
 namespace supple {
 namespace {
 
-// Every relative path of the command line leads nowhere once the working folder has been removed.
+// Throws InputError where the working folder has been removed, from which every relative path would lead nowhere.
 void check_working_folder() {
   std::error_code error;
   (void)std::filesystem::current_path(error);
@@ -39,11 +39,11 @@ int run(int argc, char** argv, const std::function<void(CommandLine&)>& add_verb
   return status == 0 && !said ? 1 : status;
 }
 
-// A file that is opened while a standard stream is closed would get the stream's number, and the stream's text would go
-// into the file. A user who closes a stream wants no output from it, so such a stream leads to /dev/null.
+// Opens /dev/null for each standard stream that is closed: a user who closes a stream wants no output from it.
+// Otherwise the next file that is opened would get the stream's number, and the stream's text would go into that file.
 void open_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", O_RDWR);  // the lowest that is free: this one
+    if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", O_RDWR);  // gets the lowest free number: this one
 }
 
 }  // namespace

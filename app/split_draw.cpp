@@ -21,7 +21,8 @@
 namespace supple {
 namespace {
 
-// Returns the name of a run: the last folder of its path, and the method of its only body where that has not said it.
+// Returns the name of a run: the last folder of its path, followed by the method of its only body where the folder is
+// not called so.
 std::string name_of_run(const std::filesystem::path& run, const SceneDef& scene) {
   const std::filesystem::path path = std::filesystem::absolute(run / "").lexically_normal().parent_path();
   std::string name = path.filename().string();
@@ -48,7 +49,7 @@ DrawPlan plan_of_panel(const SplitCommand& command, const std::string& run, int 
 // Holds what has been drawn of all runs.
 struct Drawn {
   SplitScreen screen;
-  std::vector<int> frames;  // of the runs, by picture: as many as all of them have
+  std::vector<int> frames;  // the runs' frame by picture, for as many pictures as all of them have
   FrameRate rate = 30;
   DrawResult result;
 };

@@ -11,7 +11,7 @@
 namespace supple {
 
 struct SplitCommand {
-  DrawPlan plan;  // of each run, whose folder it does not name
+  DrawPlan plan;  // the plan for each run, without the run's folder
   std::vector<std::string> runs;
   std::filesystem::path folder;
   Layout layout = Layout::row;

@@ -20,7 +20,7 @@ struct BenchSetting {
 };
 
 // Runs the named benchmarks in order, writes the page after each, and skips those that an earlier call with the same
-// program and options has finished. Returns the exit status.
+// program and options has finished. fresh: whether these are run again. Returns the exit status.
 int run_benchmarks(const std::vector<std::string>& names, const BenchSetting& setting, bool fresh);
 
 }  // namespace supple

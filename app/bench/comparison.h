@@ -20,7 +20,7 @@ struct SolverEntry {
   int history = 5;
   ChebyshevSettings chebyshev = {};
   DirectionStart start = {};  // where directions of quasi-Newton start
-  RuleMaker maker = nullptr;  // of a rule that takes the method's place (baselines/figure_rules.h)
+  RuleMaker maker = nullptr;  // makes a rule that takes the method's place (baselines/figure_rules.h)
 };
 
 // Holds the result of one solver on one state. Lists go by iteration, with the first iterate first.

@@ -16,7 +16,8 @@ SubjectChoice twisting_bar(const BenchSetting& setting) {
 
 constexpr int example_frame = 130;
 
-// Returns our method with what goes beyond the paper, for figures whose other curves are the paper's.
+// Returns our method with directions that start otherwise than the paper's, for figures whose other curves are the
+// paper's.
 SolverEntry started(DirectionStart start) {
   SolverEntry entry{"ours, " + text_of(start), Method::quasi_newton, 100};
   entry.start = start;
@@ -261,8 +262,8 @@ PlotSeries step_lengths(const Outcome& outcome) {
 
 }  // namespace
 
-// A search by Wolfe's conditions tries the full step first, so that it makes the same iterates as backtracking does
-// where the full step satisfies both conditions.
+// Counts how often the full step satisfies Armijo's and Wolfe's conditions. Where it does, a search by Wolfe's
+// conditions would make the same iterate as backtracking does, because it tries the full step first.
 ReportSection bench_figure14(const BenchSetting& setting) {
   Subject subject(twisting_bar(setting));
   SolverComparison comparison(subject, *setting.threads);

@@ -104,7 +104,8 @@ void add_motions(Cases& list) {
        held_end});
 }
 
-// Adds bodies whose halves differ, that consist of two parts, or that spin; and one case that is turned as a whole.
+// Adds bodies whose halves differ, that consist of two parts, or that spin; and two cases that are played as turned
+// copies.
 void add_unlike_parts(Cases& list) {
   const auto unlike = [&](const std::string& name, double HardCase::*ratio, double value, std::string_view density) {
     add(list, name, StableEnd::whole, {two_seconds, bar(joined({density, held_end}))});

@@ -32,7 +32,7 @@ struct HardCase {
   double far_stiffness = 1;       // stiffness of the half at the larger x, over the usual one
   double near_stiffness = 1;      // stiffness of the other half, over the usual one
   double far_density = 1;         // density of the half at the larger x, over the other half's
-  bool has_second_part = false;   // a copy of the body that shares no vertex with it and that no handle holds
+  bool has_second_part = false;   // whether there is a copy of the body, with vertices of its own, that no handle holds
   bool is_start = false;          // whether it is about a start without gravity, from which a body may come to rest
   double turns_a_second = 0;      // at the start, about the diagonal [1, 1, 1] through the centre of mass
 };

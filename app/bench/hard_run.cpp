@@ -71,7 +71,7 @@ void add_second_part(BodyDescription& body) {
   if (!mesh.regions.empty()) mesh.regions.resize(std::size_t(2 * m), mesh.regions.front());
 }
 
-// Makes the half of the body at the larger x another material, or another density by masses at its vertices.
+// Gives the half of the body at the larger x another material, or makes one half denser by masses at its vertices.
 void make_halves_differ(BodyDescription& body, const HardCase& hard, std::vector<Material> materials) {
   TetMesh& mesh = body.mesh;
   const double middle = bounds_of(mesh.rest).center().x();
@@ -259,8 +259,8 @@ StabilityOutcome HardRun::play(std::vector<Positions>* motion, WorstStep* worst)
   return outcome;
 }
 
-// Makes the worst step again with more iterations, and by Newton's method, and looks for a minimum from where each of
-// these runs ends.
+// Returns the errors of the worst step where it is made again with several numbers of iterations, and by Newton's
+// method. They are measured against the lowest of the minima that are found from where these runs end.
 TabledErrors HardRun::errors_of(const WorstStep& worst) {
   body().restore(worst.before);
   world_.enter(worst.frame);

@@ -29,7 +29,8 @@ std::optional<Crossing> crossing_of(const std::vector<Vec3>& curve, std::size_t 
   return a.z() + s * u.z() > c.z() + t * v.z() ? Crossing{there, here} : Crossing{here, there};
 }
 
-// Returns the curve with its ends led away and joined far outside, turned so that no edges cross at their ends.
+// Returns the curve with its ends led away and joined far outside. It is turned arbitrarily, so that crossings, seen
+// along the third axis, hardly ever lie exactly at ends of edges.
 std::vector<Vec3> closed(const std::vector<Vec3>& line) {
   Bounds box;
   for (const Vec3& point : line) box.include(point);

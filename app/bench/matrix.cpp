@@ -18,8 +18,8 @@ constexpr int motion_iterations[] = {3, 5, 10};  // iterations after which error
 
 }  // namespace
 
-// Times are medians, taken apart for examinations and for renewals, so that other work of the machine in some frame
-// does not count.
+// Counts each renewal, and each examination of whether one is due, with the median of its kind, so that other work of
+// the machine in some frame does not count.
 PlayedFilm play_film(Subject& subject, Threads& threads, DirectionStart start, const std::vector<int>& frames) {
   PlayedFilm film;
   std::vector<double> renewing, examining;
@@ -33,8 +33,8 @@ PlayedFilm play_film(Subject& subject, Threads& threads, DirectionStart start, c
     }
     const bool made =
         world.step({{}, [&](std::size_t, int) {
-                      const bool first = renewing.empty() && examining.empty();  // made as a body is
-                                                                                 // prepared, like A
+                      const bool first = renewing.empty() && examining.empty();  // the first matrix is made
+                                                                                 // as a body is prepared
                       (body.workspace().renewed && !first ? renewing : examining).push_back(body.report().matrix_ms);
                     }});
     if (!made) throw RunError(fmt::format("{}: frame {} failed", subject.choice.scene, frame));
@@ -58,10 +58,10 @@ struct Score {
   double trials = 0, iterations = 0;
   double log_iterations[std::size(tolerances)] = {};        // to each tolerance
   double log_ms[std::size(tolerances)] = {};                // time to each tolerance, with the film's mean of renewals
-  bool missed[std::size(tolerances)] = {};                  // some state was not solved to it
+  bool missed[std::size(tolerances)] = {};                  // whether some state was not solved to it
   double log_motion[std::size(motion_iterations)] = {};     // errors of motion
   double log_motion_ms[std::size(motion_tolerances)] = {};  // time to each tolerance of the error of motion
-  bool missed_motion[std::size(motion_tolerances)] = {};    // some state was not solved to it
+  bool missed_motion[std::size(motion_tolerances)] = {};    // whether some state was not solved to it
 };
 
 void add(Score& score, const Outcome& whole_run, const Outcome& ten, double lowest, double renewal_ms) {
@@ -81,8 +81,8 @@ void add(Score& score, const Outcome& whole_run, const Outcome& ten, double lowe
   }
 }
 
-// Adds the errors of motion of a state to a score. estimates: the estimates of the error of motion after ten
-// iterations, over the error.
+// Adds the errors of motion of a state to a score. estimates: the list to which the estimate of the error of motion
+// after ten iterations, over the error, is added.
 void add_motion(Score& score, const Outcome& whole_run, const Outcome& ten, const std::vector<double>& errors,
                 std::vector<double>& estimates) {
   const auto after = [&](int iterations) {
@@ -230,7 +230,8 @@ std::string text_of_estimates(const Estimates& estimates, const std::string& lab
                      text_of_ratios(estimates.motion));
 }
 
-// Compares on states of the candidate's own film, which say how old its matrix is.
+// Compares a candidate with the paper's start of directions, on states of the candidate's own film: their frames say
+// how old its matrix is.
 void compare(Candidate& candidate, Subject& subject, Estimates& papers_estimates, const BenchSetting& setting) {
   const PlayedFilm film = play_film(subject, *setting.threads, candidate.start, sampled_frames);
   SolverComparison comparison(subject, *setting.threads);

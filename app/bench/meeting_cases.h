@@ -13,8 +13,8 @@ namespace supple {
 
 struct MeetingCase {
   std::string name;
-  // The texts of its scenes, one for each run. MATERIAL stands for the table of each body in turn; the substeps come
-  // from outside.
+  // The texts of its scenes, one for each run. MATERIAL stands for the table of each body in turn; the number of
+  // substeps is written before the text.
   std::vector<std::string> scenes;
   std::vector<double> stiffness = {};  // of each body, over the usual one; 1 for those beyond the list
   bool stays_whole = true;             // nothing is inverted or without volume at the end

@@ -23,10 +23,10 @@ namespace {
 
 constexpr double much_depth = DeepBodies::deep;  // over the smaller body's size
 constexpr double at_rest = 0.1;                  // of a body's sizes a second
-constexpr double most_pushed = 3;                // the same, where bodies came apart that were pushed out by 1
+constexpr double most_pushed = 3;                // the same, of bodies that start in each other; push_out is 1
 
-// Follows the energy of all bodies together. Contact between them may take energy; it gives none but what pushes bodies
-// apart that start in each other, of which the speed at the end is asked instead.
+// Follows the energy of all bodies together. Contact between them may take energy, but gives none, except where it
+// pushes bodies apart that start in each other. For those, a rule limits the speed at the end instead.
 class EnergyOfAll {
  public:
   explicit EnergyOfAll(World& world) : world_(world) {

@@ -1,6 +1,6 @@
 // Plays hard cases of bodies that meet (meeting_cases.h), and makes the tables of how they end. What a run tells of
-// itself comes from the recorders and the tally of a film; whether it kept its rules is seen from its states alone, so
-// that runs are found that go wrong and tell nothing. docs/bench.md has the rules.
+// itself comes from the recorders and the tally of a film. Whether it kept its rules is seen from its states alone, so
+// that runs that go wrong without a warning are found. docs/bench.md has the rules.
 #pragma once
 
 #include <filesystem>
@@ -39,7 +39,7 @@ struct MeetingOutcome {
 std::vector<MeetingOutcome> run_meeting(const MeetingCase& meeting, const NamedMaterial& material, int substeps,
                                         const std::filesystem::path& folder, Threads& threads);
 
-// Counts runs, and those of them that broke a rule, also without a warning.
+// Counts runs, those that broke a rule, and those that broke one without a warning.
 struct MeetingCounts {
   int runs = 0, failed = 0, silent = 0;
 };

@@ -1,4 +1,5 @@
-// Williams, Waterman, Patterson 2009, "Roofline: an insightful visual performance model for multicore architectures".
+// Compares the stages of a step with what a core could do at most (Williams, Waterman, Patterson 2009, "Roofline: an
+// insightful visual performance model for multicore architectures").
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -29,7 +30,7 @@ double peak_rate() {
   std::fill(sum, sum + registers, factor);
   const double ms = least_ms(7, [&] {
     for (int round = 0; round < rounds; ++round) {
-#pragma GCC unroll 16  // a loop that stayed one would keep the sums in memory
+#pragma GCC unroll 16  // otherwise the sums would be kept in memory
       for (Register& one : sum) one = Eigen::internal::pmadd(one, factor, addend);
     }
   });

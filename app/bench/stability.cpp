@@ -10,7 +10,7 @@
 namespace supple {
 namespace {
 
-constexpr double torn = 1000;  // a stretch beyond which nothing is left to save
+constexpr double torn = 1000;  // the stretch above which a body counts as torn
 
 struct ShakenRun {
   std::vector<double> stretch;  // by frame; shorter than asked when a step failed

@@ -14,7 +14,9 @@
 namespace supple {
 
 inline constexpr double usual_young = 3e4, usual_poisson = 0.35;  // of the materials of hard cases; the first in [Pa]
-inline constexpr double much_energy = 0.2;  // energy from nothing over the exchanged energy, above which a run warns
+// The energy from nothing over the exchanged energy above which a run breaks its rule. The program warns above a number
+// of its own (output/run/row_tally.cpp), which is the same.
+inline constexpr double much_energy = 0.2;
 
 // Lists the numbers of iterations after which the error of a case's worst step is measured.
 constexpr std::array<int, 3> tabled_iterations = {10, 50, 200};
@@ -57,8 +59,8 @@ std::vector<NamedMaterial> stability_materials();
 // what a scene allows; nothing where the material has no Poisson's ratio and the wanted one is not the usual one.
 std::optional<std::string> material_table(const std::string& name, double young, double poisson);
 
-// Plays a case for each of its seeds, or for each of its turned copies. Gives nothing where the material cannot have
-// the case's Poisson's ratio. with_errors: tables the errors of the first run's worst step.
+// Plays a case for each of its seeds, or for each of its turned copies. Returns no outcome where the material cannot
+// have the case's Poisson's ratio. with_errors: whether the errors of the first run's worst step are measured.
 std::vector<StabilityOutcome> run_case(const HardCase& hard, const NamedMaterial& material, Threads& threads,
                                        bool with_errors = false);
 

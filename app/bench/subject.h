@@ -21,7 +21,7 @@ struct SubjectChoice {
 // Says what directions of quasi-Newton start from. The default is the paper's.
 struct DirectionStart {
   StartMatrix matrix = StartMatrix::system;
-  bool second_level = false;  // of directions that know how the body turns (coarse/second_level.h)
+  bool second_level = false;  // whether they know how the body turns (sim/coarse/second_level.h)
 
   int levels() const { return second_level ? 2 : 1; }
 };
@@ -61,9 +61,9 @@ struct Subject {
   std::string size_text() const;  // "3472 vertices, 10441 elements"
 };
 
-// Simulates the scene with its own settings and keeps the states before these frames (ascending). `folder` stores the
-// states for the next time, each with its problem (docs/states.md). A state that is already in the folder and belongs
-// to this body is read back instead.
+// Returns the states before these frames (ascending). Where `folder` has all of them for this body, they are read back.
+// Otherwise the scene is simulated with its own settings, and the states are stored in `folder` for the next time, each
+// with its problem (docs/states.md).
 std::vector<BenchState> states_of(Subject& subject, const std::vector<int>& frames, const std::filesystem::path& folder,
                                   Threads& threads);
 

@@ -134,7 +134,7 @@ const std::vector<Row>& rows() {
   return list;
 }
 
-// Compares our method with what goes beyond the paper against ten iterations of the paper's.
+// Compares our method, with directions that start otherwise than the paper's, with ten iterations of the paper's.
 struct BesidePapers {
   DirectionStart start;
   PlayedFilm film;

@@ -20,7 +20,7 @@ namespace {
 constexpr int plays = 2;           // of each film; of each frame, the quickest play counts
 constexpr int measured_steps = 6;  // frames whose last steps are repeated by the reference
 
-// Measures the steps of a body alone.
+// Measures the errors of the steps that a body makes alone.
 class AloneMeter : public ErrorMeter {
  public:
   AloneMeter(const Model& model, Threads& threads) : reference_(model) { workspace_.threads = &threads; }
@@ -51,7 +51,7 @@ FilmSolvers measuring_solvers() {
 
 // Holds what was measured of the steps of some frames.
 struct StepsMeasured {
-  std::vector<double> error, motion;  // of each island and each body alone; of each body
+  std::vector<double> error, motion;  // errors of each island and each body alone; errors of motion of each body
   int unsure = 0;                     // references that did not converge
 };
 

@@ -18,7 +18,7 @@
 namespace supple {
 namespace {
 
-constexpr int creep_frames = 30;  // at the end, in which what lies still is watched
+constexpr int creep_frames = 30;  // the last ones, in which creep is measured
 
 // Returns the text of ten square cloths that fall on a ball, one above the other.
 std::string ten_layers() {
@@ -49,9 +49,9 @@ std::string hit_by_a_soft_ball() {
 // Holds what is seen of the layers of a film.
 struct LayersSeen {
   int bodies = 0, vertices = 0, frames = 0;
-  int crossed_frames = 0;             // frames with crossings of what is apart
+  int crossed_frames = 0;             // frames with crossings other than at sharp folds
   std::int64_t most = 0, at_end = 0;  // of these crossings
-  std::int64_t most_beside = 0;       // of those at sharp folds
+  std::int64_t most_beside = 0;       // of crossings at sharp folds
   double ms = 0;                      // of the steps of a frame, mean
   double kinetic = 0;                 // energy at the end, over its largest
   double creep = 0;                   // the longest way of a vertex in the last frames, over its body's size
@@ -98,7 +98,7 @@ class WorldCrossings {
   EdgeCrossings crossings_;
 };
 
-// Returns the longest way of a vertex since then, over the size of its body.
+// Returns the longest way of a vertex from the places `before`, over the size of its body.
 double creep_since(TouchingFilm& film, const std::vector<Positions>& before) {
   double most = 0;
   for (std::size_t b = 0; b < before.size(); ++b)

@@ -45,8 +45,8 @@ struct Pressed {
   int points = 0;       // that carry the force
 };
 
-// Finds the radius of the patch from where its points carry how much of the force: Hertz's pressure
-// p0 sqrt(1 - r^2/a^2) has the mean square radius 2/5 a^2.
+// Finds the force, and the radius of the patch from how the force is spread over the places of its points: Hertz's
+// pressure p0 sqrt(1 - r^2/a^2) has the mean square radius 2/5 a^2.
 Pressed seen_of_patch(TouchingFilm& film) {
   Pressed seen;
   double carried = 0;
@@ -56,7 +56,7 @@ Pressed seen_of_patch(TouchingFilm& film) {
     const Positions& x = film.world().body(b).state().x;
     for (const Contact& contact : film.world().body(b).workspace().current.contacts) {
       const double above = gap(contact, x);
-      // Of each contact, the other sphere has the place in a triangle, with weights below zero.
+      // Both spheres list a contact. The one whose triangle is touched has weights below zero, and is left out.
       if (contact.stencil.weight[0] < 0 || above >= 0) continue;
       const double force = -2 * contact.stiffness * above;
       const Eigen::Vector2d place = x.row(contact.stencil.vertex[0]).tail<2>().transpose();

@@ -34,7 +34,7 @@ Substance substance_of(const std::string& model, double young, double poisson, d
                       poisson, density)};
 }
 
-// Returns a substance that keeps its volume nearly, as rubber does, and is stiffer than any preset.
+// Returns rubber of any stiffness, which nearly keeps its volume.
 Substance stiff_rubber(double young) { return substance_of("stable-neo-hookean", young, 0.45, 1100); }
 Substance stiff_corotated(double young) { return substance_of("corotated", young, 0.4, 1000); }
 
@@ -84,7 +84,7 @@ std::vector<Ball> balls(std::span<const int> other_sizes) {
   return list;
 }
 
-// center: the place of the ball's centre at the start.
+// Returns the text of a scene of a ball, without what it rolls on. center: the place of its centre at the start.
 std::string ball_text(const Ball& ball, int frames, const Vec3& center, double speed) {
   return fmt::format(
       "frames = {}\n[[body]]\nname = \"ball\"\nshape = \"shapes/sphere.toml\"\nscale = {:g}\nvertices = {}\nposition = "

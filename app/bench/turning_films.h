@@ -1,4 +1,5 @@
-// Plays a body that turns in several ways, and tabulates how far each film comes from the one whose steps are solved.
+// Plays films of a body that turns, by several solvers, and tabulates how far each film comes from the one whose steps
+// are solved.
 #pragma once
 
 #include <Eigen/Core>

@@ -7,10 +7,10 @@
 
 namespace supple {
 
-// Summarises the results of a point, which may have many rows.
+// Holds a summary of a point's results, without the rows of its frames, which may be many.
 struct PointResult {
   PointOutcome outcome;
-  std::size_t frames = 0;        // that are whole; 0 where there are none of this scene and program
+  std::size_t frames = 0;        // how many are whole; 0 where there are none of this scene and program
   std::uint64_t state_hash = 0;  // of the last one
   struct BodyMeasures {
     std::string name;

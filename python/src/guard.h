@@ -1,5 +1,4 @@
-// Keeps an object that is at work in one thread from being used by another, and one that a process inherited from being
-// used there.
+// Keeps an object from being used by a second thread while it is at work in one, and by a process that inherited it.
 #pragma once
 
 #include <unistd.h>

@@ -23,7 +23,7 @@ struct ModelFace {
   Positions rest;                    // n x 3 in the order of the mesh [m]
 
   // material: what a scene's body has there; pins: vertices that are held; pin_stiffness: of their springs [N/m], or
-  // None where they are held exactly. solver: keys of the table [solver] that shape the matrix.
+  // None where they are held exactly. solver: keys of the table [solver].
   ModelFace(const py::object& vertices, const py::object& tetrahedra, const py::object& material,
             const py::object& density, double time_step, const py::object& pins, const py::object& pin_stiffness,
             const py::dict& solver);
@@ -41,7 +41,7 @@ class StateFace {
   py::array velocities() const { return view_of(v_, true); }
   double time() const { return held_->state.time; }
 
-  // Makes a step. targets: of the pinned vertices, or None where they stay at rest.
+  // Makes a step. targets: the places of the pinned vertices at its end; None: their places at rest.
   py::dict step(const ModelFace& model, const py::object& gravity, const CollidersFace* colliders,
                 const py::object& targets);
 

@@ -91,7 +91,7 @@ std::vector<std::int32_t> vertices_of(const py::handle& array, const std::string
 
 namespace {
 
-// Refuses what numpy would turn into numbers although it is none.
+// Tells whether an array holds numbers. numpy would turn other values into numbers, too.
 bool is_numeric(const py::handle& array) {
   const py::array given = py::array::ensure(array);
   if (!given) PyErr_Clear();

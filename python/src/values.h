@@ -1,5 +1,5 @@
-// Turns Python's values into those of scene files, so that the readers of scenes check them, and arrays of numbers into
-// each other.
+// Turns Python's values into those of scene files, so that the readers of scenes check them, and turns arrays of Python
+// and of C++ into each other.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -39,14 +39,14 @@ Vec3 vector_of(const py::handle& array, const std::string& name);
 // Returns an array that looks at rows without copying them. It keeps them alive.
 py::array view_of(const std::shared_ptr<Positions>& rows, bool writeable = false);
 
-// Sorts rows as in the body's mesh, in place, because arrays look at `sorted`.
+// Copies rows into `sorted`, in the order of the body's mesh. `sorted` stays where it is, because arrays look at it.
 inline void sort_rows(const Model& model, const Positions& rows, Positions& sorted) {
   for (int v = 0; v < model.vertices; ++v)
     std::copy_n(rows.data() + 3 * std::ptrdiff_t(v), 3,
                 sorted.data() + 3 * std::ptrdiff_t(model.input_of[std::size_t(v)]));
 }
 
-// Returns an array of its own.
+// Returns an array with a copy of the rows.
 template <class Rows>
 py::array copy_of(const Rows& rows) {
   using Number = typename Rows::Scalar;

@@ -1,4 +1,4 @@
-// Offers a World to Python: steps with the interpreter let go, views of its bodies, changes, pictures.
+// Offers a World to Python: steps while other threads of Python run, views of its bodies, changes, pictures.
 #pragma once
 
 #include <memory>
@@ -107,13 +107,13 @@ class WorldFace {
   std::vector<int> contacts_;                            // by body
   std::vector<std::optional<MeasuredErrors>> measured_;  // by body; empty: not asked for
   std::vector<std::string> warnings_;
-  std::vector<Eigen::Index> own_handled_;  // by body: vertices of the scene's own handles
-  std::vector<std::size_t> own_handles_;   // by body, without those that were added
-  bool warned_ = false;                    // that a step was not solved
-  int grabs_ = 0;                          // that were given names here
+  std::vector<Eigen::Index> own_handled_;  // by body: how many vertices the scene's own handles hold
+  std::vector<std::size_t> own_handles_;   // by body: how many handles the scene has, without added ones
+  bool warned_ = false;                    // whether it was said that a step is not solved
+  int grabs_ = 0;                          // how many were given names here
   std::uint64_t scene_ = 0;                // hash of the scene
   bool foreign_ = false;                   // the world goes on from a state of another scene
-  bool failed_ = false;                    // a step; until a state is restored
+  bool failed_ = false;                    // whether a step has failed, until a state is restored
 };
 
 }  // namespace supple::python

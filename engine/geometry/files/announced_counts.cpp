@@ -14,7 +14,7 @@
 namespace supple {
 namespace {
 
-// Splits a line at its spaces. Six words are enough.
+// Returns the first six words of a line in small letters; no line of a header needs more.
 std::vector<std::string> words_of(std::string_view line) {
   std::vector<std::string> words;
   for (std::size_t at = 0; words.size() < 6;) {
@@ -27,7 +27,8 @@ std::vector<std::string> words_of(std::string_view line) {
   return words;
 }
 
-// Reads a count as far as it goes; one that no integer holds is larger than any file.
+// Reads the digits at the beginning of a word as a count. One that is too large for an integer is infinite, larger than
+// any file.
 double count_of(std::string_view word) {
   std::uint64_t count = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
@@ -59,7 +60,7 @@ int bytes_of_type(std::string_view type) {
   return known != longer.end() ? known->bytes : type == "float64" ? 8 : 1;
 }
 
-// One kind of element of a PLY file, and the fewest bytes that one of them takes.
+// Describes a kind of element of a PLY file, with the fewest bytes that one of them takes.
 struct PlyElement {
   std::string name;
   double count = 0;
@@ -76,7 +77,7 @@ std::string wrong_with_ply(std::string_view text, std::uintmax_t bytes) {
     if (words.empty()) continue;
     if (words[0] == "format" && words.size() > 1) ascii = words[1] == "ascii";
     if (words[0] == "element" && words.size() > 2) elements.push_back({words[1], count_of(words[2]), 0});
-    // A number in words takes a digit and a space; of a list there is at least its length.
+    // A number in digits takes one of them and a space; a list takes at least its length.
     if (words[0] == "property" && words.size() > 2 && !elements.empty())
       elements.back().bytes += ascii ? 2 : bytes_of_type(words[1] == "list" ? words[2] : words[1]);
     if (words[0] != "end_header") continue;

@@ -1,5 +1,5 @@
 // Compares what the header of a surface file announces with the size of the file. Readers take memory for what is
-// announced before they find that it is not there, and some never come to an end without the end of a header.
+// announced before they find that it is not there, and some never return where the header has no end.
 #pragma once
 
 #include <cstdint>

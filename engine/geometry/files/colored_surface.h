@@ -23,7 +23,7 @@ struct SurfaceParts {
   std::vector<std::int32_t> of;                 // number of the part by triangle, or in ColoredSurface by vertex
 };
 
-// Holds what a file says, with the vertices that it has there.
+// Holds what a file says of a surface, with the vertices of the file.
 struct ColoredSurface {
   TriMesh mesh;
   std::vector<SurfaceColor> colors;  // by vertex; empty where the file has no colours

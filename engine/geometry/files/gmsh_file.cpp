@@ -86,7 +86,8 @@ void read_elements_2(MeshWords& words, Gmsh& mesh) {
   }
 }
 
-// Points have a place, all other entities a box, and all their physical groups. What bounds them is not needed.
+// Reads the physical groups of volumes. A point has a place, every other entity a box, and each has its groups; what
+// bounds an entity is not needed.
 void read_entities(MeshWords& words, Gmsh& mesh) {
   std::array<Eigen::Index, 4> counts{};
   for (Eigen::Index& count : counts) count = words.count("entities", 10);

@@ -20,7 +20,8 @@ struct Sections {
   std::vector<int> triangle_lines;
 };
 
-// Reads rows of `columns` vertex indices and a reference, and passes each to row(i, indices, reference).
+// Reads rows of `columns` vertex indices and a reference, and passes each to row(i, count, indices, reference), where
+// count is the number of all rows.
 template <class Row>
 void read_rows(MeshWords& words, const char* what, int columns, Eigen::Index vertices, std::vector<int>& lines,
                const Row& row) {
@@ -45,7 +46,7 @@ void read_rows(MeshWords& words, const char* what, int columns, Eigen::Index ver
   }
 }
 
-// Skips a section that is of no use here: rows of integers, of which it returns how many stand in one.
+// Skips a section of rows of integers that is of no use here. Returns the number of integers in a row.
 int skip_section(MeshWords& words, std::string_view section) {
   struct Skipped {
     std::string_view name;
@@ -73,7 +74,7 @@ Sections read_sections(MeshWords& words, Wanted wanted) {
     words.refuse(fmt::format("version {} of the format is not known (1 to 4 are)", version));
   Sections read;
   TetMesh& mesh = read.raw.mesh;
-  int columns = 1;  // of the section before
+  int columns = 1;  // in a row of the section before
   for (;;) {
     words.refuse_further_rows(columns);
     const std::string_view section = words.next();

@@ -93,7 +93,7 @@ const MeshFormat* format_of(const std::filesystem::path& path) {
   return found == formats.end() ? nullptr : found;
 }
 
-// TetGen's two files of one name.
+// Tells whether a file is one of the two that TetGen writes under one name.
 bool is_tetgen(const std::filesystem::path& path) { return path.extension() == ".ele" || path.extension() == ".node"; }
 
 void write_text(const std::filesystem::path& path, const std::string& text) {

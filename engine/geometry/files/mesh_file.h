@@ -28,20 +28,21 @@ bool is_mesh_file(const std::filesystem::path& path);
 // finite, elements without volume, elements listed twice, or elements of both orientations.
 MeshFile read_mesh(const std::filesystem::path& path);
 
-// Checks a mesh that a program has made, as read_mesh() checks files, and turns elements that are all negative. name:
-// what messages call it. first: the number of the first element and vertex in messages. Throws InputError, also for
-// vertices of no element.
+// Checks a mesh that a program has made, as read_mesh() checks files, and turns all elements where all of them are
+// negative. name: what messages call it. first: the number of the first element and vertex in messages. Throws
+// InputError, also for vertices of no element.
 TetMesh checked_mesh(TetMesh mesh, const std::string& name, int first = 1);
 
 // Reads the Triangles of a MEDIT file, for cloth, and ignores its elements. Vertices that no triangle uses are left
 // out. Throws InputError as above, and for triangles without area or listed twice.
 TriMesh read_surface(const std::filesystem::path& path);
 
-// Writes the format of the name's ending, of TetGen both files, with seventeen significant digits, so that reading
-// gives the same doubles back. Throws InputError for other endings, and RunError when a file cannot be written.
+// Writes a mesh in the format of the name's ending (for TetGen both files), with seventeen significant digits, so that
+// reading gives the same doubles back. Throws InputError for other endings, and RunError when a file cannot be written.
 void write_mesh(const std::filesystem::path& path, const TetMesh& mesh);
 
-// Throws the InputError for other endings alone, before a mesh is made that could not be written.
+// Throws InputError for an ending that write_mesh() would refuse. It is called before a mesh is made that could not be
+// written.
 void check_writable(const std::filesystem::path& path);
 
 }  // namespace supple

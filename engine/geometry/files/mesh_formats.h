@@ -18,10 +18,10 @@ struct RawMesh {
 
 inline constexpr long long largest_reference = 1'000'000;  // the largest region tag of an element
 
-// Returns a file's text without a byte-order mark; lines that end with \r alone end with \n.
+// Returns a file's text without a byte-order mark. Where all lines end with \r alone, they end with \n instead.
 std::string mesh_text(const std::filesystem::path& path);
 
-// Says that elements with a volume were left out.
+// Returns the note that so many elements with a volume were left out.
 std::string left_out_note(long long elements);
 
 RawMesh read_medit(std::string text, const std::string& name);

@@ -71,8 +71,8 @@ class MeshWords {
   // Counts one more of the announced rows as complete; messages say how many are.
   void end_row() { ++rows_; }
 
-  // Refuses a number that follows the announced rows: there are more of them. numbers_a_row: 0 where rows differ, and
-  // each has a line of its own.
+  // Refuses a number that follows the announced rows: there are more of them. numbers_a_row: 0 where rows are not
+  // equally long and each has a line of its own.
   void refuse_further_rows(int numbers_a_row) {
     const std::size_t start = at_;
     const int first_line = line_;

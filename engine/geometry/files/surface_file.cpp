@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uintmax_t largest_file = 1u << 30;
 
-// Refuses what is no file, or one that cannot be opened, is empty or too large.
+// Throws InputError where the path names no plain file, and where the file cannot be opened, is empty or is too large.
 void check_plain_file(const std::filesystem::path& path) {
   std::error_code error;
   const std::string name = path.string();
@@ -152,9 +152,9 @@ ColoredSurface decode(const std::string& bytes, const std::string& name) {
 std::filesystem::path surface_reader_program() {
   if (const auto beside = companion_program("supple-read-surface")) return *beside;
   std::error_code error;
-  const std::filesystem::path built = SUPPLE_SURFACE_READER;  // of tests, which lie elsewhere in the build's folder
+  const std::filesystem::path built = SUPPLE_SURFACE_READER;  // for tests, which lie elsewhere in the build's folder
   if (std::filesystem::is_regular_file(built, error)) return built;
-  return SUPPLE_INSTALLED_READER;  // of a program elsewhere that uses the library
+  return SUPPLE_INSTALLED_READER;  // for a program elsewhere that uses the library
 }
 
 ColoredSurface read_colored_surface(const std::filesystem::path& path) {

@@ -13,8 +13,8 @@
 namespace supple {
 
 // Reads the triangles and colours of a file as they are there. Node transforms are applied; polygons are cut into
-// triangles; points and lines are left out; textures inside the file or beside it are read. Throws InputError as below,
-// but for surfaces that are not closed.
+// triangles; points and lines are left out; textures inside the file or beside it are read. Throws InputError as
+// read_closed_surface() does, except that the surface need not be closed.
 ColoredSurface read_colored_surface(const std::filesystem::path& path);
 
 // Reads a file and returns its closed surface, without its colours. Remarks are added to `notes`, as by closed_surface
@@ -23,7 +23,8 @@ ColoredSurface read_colored_surface(const std::filesystem::path& path);
 // long or refused it, and when the surface is not closed.
 TriMesh read_closed_surface(const std::filesystem::path& path, std::vector<std::string>* notes);
 
-// The same for a surface that need not be closed: solid_surface makes a solid of it as the options say.
+// Reads a surface that need not be closed; solid_surface() makes a solid of it as the options say. Throws InputError as
+// above, and as solid_surface() does.
 SolidSurface read_solid_surface(const std::filesystem::path& path, const SurfaceOptions& options,
                                 std::vector<std::string>* notes);
 

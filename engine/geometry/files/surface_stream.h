@@ -19,7 +19,7 @@ inline constexpr std::int64_t most_pixels = 1 << 26;  // of all textures togethe
 inline constexpr std::int64_t most_text = 1 << 16;    // bytes of the remarks, and of what was found
 inline constexpr std::int64_t most_names = 1 << 24;   // bytes of the names of parts
 
-inline constexpr char picture_mode[] = "--picture";  // an argument before the file: it is a picture
+inline constexpr char picture_mode[] = "--picture";  // the argument before the name of a file that is a picture
 
 struct Place {
   std::int32_t line = 0, column = 0;  // 0: unknown
@@ -35,7 +35,7 @@ struct Counts {
 };
 
 struct TextureHead {
-  std::int32_t width = 0, height = 0, wrap_u = 0, wrap_v = 0, name = 0;  // name: its bytes
+  std::int32_t width = 0, height = 0, wrap_u = 0, wrap_v = 0, name = 0;  // name: the bytes of the texture's name
 };
 
 }  // namespace supple::surface_stream

@@ -74,7 +74,8 @@ std::string tetgen_nodes(const TetMesh& mesh) {
   return text;
 }
 
-// TetGen's elements are oriented the other way round: the fourth corner lies below the first three as seen from above.
+// Returns the text of the file of elements, each with its last two corners exchanged. TetGen orients elements the other
+// way round: seen from the fourth corner, the first three run clockwise.
 std::string tetgen_elements(const TetMesh& mesh) {
   std::string text = fmt::format("{} 4 1\n", mesh.tets.rows());
   for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {

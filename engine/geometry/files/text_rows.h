@@ -27,7 +27,7 @@ class TextRows {
   bool next();
 
   const std::vector<RowWord>& words() const { return words_; }
-  // The line without its end, with comments; a continued line in parts has only its first one here.
+  // Returns the line without its end, with its comments; of a line that is continued, only the first part.
   std::string_view raw() const { return raw_; }
   int line() const { return line_; }          // the line number of the words; at the end, that of the last line
   std::size_t offset() const { return at_; }  // where the text after the line begins
@@ -36,7 +36,7 @@ class TextRows {
   [[noreturn]] void refuse(int line, int column, const std::string& message) const;
   [[noreturn]] void refuse(const RowWord& word, const std::string& message) const;
 
-  // These refuse a word that is no such number. what: "a coordinate" or the like.
+  // These return the number that a word is, and refuse a word that is none. what: "a coordinate" or the like.
   double number(const RowWord& word, std::string_view what) const;  // may be nan or infinite
   double finite(const RowWord& word, std::string_view what) const;
   long long integer(const RowWord& word, std::string_view what) const;
@@ -49,10 +49,10 @@ class TextRows {
   Rules rules_;
   std::vector<RowWord> words_;
   std::size_t at_ = 0;
-  int line_ = 0, lines_ = 0;  // lines_: passed so far
+  int line_ = 0, lines_ = 0;  // lines_: how many were passed so far
 };
 
-// Returns the word as assimp reads it: itself where it is plain, else its value with all digits.
+// Returns the number in a form that assimp reads: the word itself where it is plain, else the value with nine digits.
 std::string plain_number(std::string_view word, double value);
 
 }  // namespace supple

@@ -63,7 +63,8 @@ void check_counts(const std::string& name, std::int64_t frames, std::int64_t poi
                    fmt::format("tells of {} frames of {} points: at least one of each is needed", frames, points));
 }
 
-// A run that was stopped may leave part of a frame that the header does not count.
+// Reads a PC2 point cache. Behind the frames that the header counts may stand a part of another one, which a run that
+// was stopped leaves.
 std::vector<Positions> read_pc2(const std::filesystem::path& path) {
   constexpr std::size_t header = 32, version_at = 12, points_at = 16, frames_at = 28;
   const std::string name = path.string(), bytes = read_file(path, most_motion_bytes);
@@ -181,7 +182,7 @@ bool is_motion_there(const std::filesystem::path& path) {
   try {
     return !files_of_series(path).empty();
   } catch (const InputError&) {
-    return true;  // there are more files than one series has, of which read_vertex_motion() tells
+    return true;  // two files have one number: read_vertex_motion() says so
   }
 }
 

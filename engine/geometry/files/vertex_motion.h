@@ -13,7 +13,7 @@ namespace supple {
 
 struct VertexMotion {
   std::vector<Positions> frames;  // vertices x 3 each, in the order of the surface's file
-  std::filesystem::path file;     // that was read; of a series the first one
+  std::filesystem::path file;     // the file that was read; of a series the first one
 };
 
 // Says what a motion may be, for messages.
@@ -24,14 +24,14 @@ inline constexpr const char* motion_kinds =
 // series.
 bool is_motion_there(const std::filesystem::path& path);
 
-// Reads a motion. body: whose motion is taken from the folder of a run. Throws InputError that names the file where it
-// cannot be read, is cut short, is no such file, or has numbers that are not finite.
+// Reads a motion. body: the body whose motion is read, where the path is the folder of a run. Throws InputError that
+// names the file where it cannot be read, is cut short, is no such file, or has numbers that are not finite.
 VertexMotion read_vertex_motion(const std::filesystem::path& path, const std::string& body);
 
 // Returns the vertices of an OBJ file in its order, also those that no triangle has.
 Positions read_obj_vertices(const std::filesystem::path& path);
 
-// Returns what a motion is known by.
+// Returns the file of a motion with the hash of all its positions.
 SourceFile source_of(const VertexMotion& motion);
 
 }  // namespace supple

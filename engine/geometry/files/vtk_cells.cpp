@@ -17,7 +17,8 @@ constexpr long long vtk_tetrahedron = 10, vtk_quadratic_tetrahedron = 24;  // nu
   throw InputError({Problem{{name, cells.lines[cell]}, message}});
 }
 
-// Tells of voxels, hexahedra, wedges, pyramids and the like, and of polyhedra.
+// Tells whether cells of a type other than the two above have a volume: voxels, hexahedra, wedges, pyramids and the
+// like, and polyhedra.
 bool has_volume(long long type) {
   constexpr std::array<long long, 26> volumes = {11, 12, 13, 14, 15, 16, 25, 26, 27, 29, 31, 32, 33,
                                                  37, 41, 42, 64, 65, 66, 67, 71, 72, 73, 74, 78, 79};

@@ -11,7 +11,7 @@ struct VtkCells {
   std::vector<long long> ends;     // where each cell ends in `points`
   std::vector<long long> types;    // the VTK type of each cell
   std::vector<long long> regions;  // the region tag of each cell; empty: all are 0
-  std::vector<int> lines;          // of each cell; empty where there are none
+  std::vector<int> lines;          // the line of each cell in the file; empty where cells have none
 };
 
 // Returns the mesh of the tetrahedra, without all other cells. Throws InputError where counts or indices do not fit

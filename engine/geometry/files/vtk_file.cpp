@@ -14,7 +14,8 @@ std::vector<long long> read_integers(MeshWords& words, Eigen::Index count, const
   return values;
 }
 
-// Cells of version 5 are two arrays; before, each cell is its number of points and then the points.
+// Reads the cells. In version 5 they are two arrays; in earlier ones, each cell is its number of points and then the
+// points.
 void read_cells(MeshWords& words, bool arrays, VtkCells& cells) {
   const Eigen::Index first = words.count("cells", 2), second = words.count("numbers of cells", 2);
   if (arrays) {
@@ -77,7 +78,7 @@ RawMesh read_legacy_vtk(std::string text, const std::string& name) {
   if (words.next() != "DATASET" || words.next() != "UNSTRUCTURED_GRID")
     words.refuse("the data set must be an UNSTRUCTURED_GRID");
   VtkCells cells;
-  int columns = 0;  // of the rows before
+  int columns = 0;  // in each row of the section before
   for (;;) {
     words.refuse_further_rows(columns);
     const std::string section(words.next());

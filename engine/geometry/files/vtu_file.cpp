@@ -21,14 +21,13 @@ class Vtu {
   Vtu(std::string text, std::string name) : text_(std::move(text)), name_(std::move(name)) {}
 
   [[noreturn]] void refuse(const std::string& message) const { throw InputError(name_, message); }
-  // Names the line of a part of the text.
+  // Refuses the file, with the line at which a part of the text begins.
   [[noreturn]] void refuse(std::string_view part, const std::string& message) const {
     const auto line = 1 + std::count(text_.data(), part.data(), '\n');
     throw InputError({Problem{{name_, int(line)}, message}});
   }
 
-  // Returns the place of the next opening tag of this name from a place on, before another place; npos where there is
-  // none.
+  // Returns the first place in the range [from, before) at which a tag of this name opens; npos where there is none.
   std::size_t tag(std::string_view tag_name, std::size_t from, std::size_t before) const {
     for (std::size_t i = text_.find('<', from); i < before; i = text_.find('<', i + 1)) {
       if (text_.compare(i + 1, tag_name.size(), tag_name) != 0) continue;
@@ -84,7 +83,7 @@ std::string from_base64(const Vtu& file, std::string_view text) {
     if (c == '+') value = 62;
     if (c == '/') value = 63;
     if (c == ' ' || c == '\n' || c == '\r' || c == '\t') continue;
-    if (c == '=') {  // the end of a run; the count of bytes is encoded on its own
+    if (c == '=') {  // the padding; more may follow, as the count of bytes may be encoded on its own
       if (count == 2) bytes.push_back(char(block >> 4));
       if (count == 3) bytes.append({char(block >> 10), char(block >> 2)});
       block = 0, count = 0;

@@ -27,7 +27,7 @@ ClothMesh cloth_grid(const Eigen::Vector2d& extent, const Eigen::Vector2i& cells
 // Makes a shell of any triangle mesh.
 ClothMesh cloth_of(TriMesh surface);
 
-// Gives each vertex a third of the area of its triangles. [m^2]
+// Returns, for each vertex, a third of the area of its triangles [m^2].
 std::vector<double> vertex_areas(const TriMesh& surface);
 
 }  // namespace supple

@@ -61,7 +61,7 @@ Bounds bounds_of(std::span<const Boxed> list) {
   return box;
 }
 
-// Returns those that are near a box, which become the first of the list.
+// Moves the triangles that meet a box to the front of the list, and returns them.
 std::span<Boxed> those_near(std::span<Boxed> list, const Bounds& box) {
   const auto end = std::partition(list.begin(), list.end(), [&box](const Boxed& one) {
     return !apart(one.lower, one.upper, box.lower, box.upper);
@@ -115,9 +115,9 @@ bool share_space_as_they_are(const PosedMesh& a, const PosedMesh& b) {
 
 }  // namespace
 
-// Faces and edges often lie in one plane, as of boxes on one grid, where no edge passes through anything but a border.
-// So one mesh is moved by a little, in a direction that is no mesh's own, and back by as much: meshes that share space
-// do so in both places, and meshes that touch in one at most.
+// Faces and edges of two meshes often lie in one plane, as those of boxes on one grid do; there no edge passes through
+// anything but a border. So one mesh is moved by a little, in a direction that edges of meshes hardly ever have, once
+// forwards and once backwards: meshes that share space do so in both places, and meshes that touch in one at most.
 bool share_space(const PosedMesh& a, const PosedMesh& b) {
   constexpr double least_depth = 1e-7;  // over the size of the smaller mesh
   if (apart(a.box, b.box)) return false;

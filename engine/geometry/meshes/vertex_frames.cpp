@@ -10,8 +10,8 @@ namespace {
 
 constexpr double least_stretch = 2.0 / 3, largest_stretch = 1.5;
 
-// Returns the gradients of an element's four linear shape functions times its rest volume: a third of the face opposite
-// the corner, inwards. They are finite in slivers too.
+// Returns the gradients of an element's four linear shape functions times its rest volume: for each corner a third of
+// the area vector of the opposite face, which points inwards. They are finite in slivers too.
 Eigen::Matrix<double, 4, 3> volume_gradients(const TetMesh& mesh, Eigen::Index element) {
   const auto edge = [&](int k) -> Vec3 {
     return mesh.rest.row(mesh.tets(element, k)) - mesh.rest.row(mesh.tets(element, 0));

@@ -28,9 +28,9 @@ std::string small_letters(std::string text) {
 
 float linear_of(float srgb) { return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f); }
 
-float within_one(float value) { return value >= 0 ? std::min(value, 1.0f) : 0.0f; }  // also what is not a number
+float within_one(float value) { return value >= 0 ? std::min(value, 1.0f) : 0.0f; }  // 0 for what is not a number
 
-// A place far from the picture has no digits left for the place in it.
+// Returns a texture coordinate; 0 where it is so large that a float has no digits left for the place in the picture.
 float coordinate(float value) { return std::abs(value) < 1e6f ? value : 0.0f; }
 
 Wrap wrap_of(aiTextureMapMode mode) {
@@ -38,8 +38,8 @@ Wrap wrap_of(aiTextureMapMode mode) {
   return mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal ? Wrap::clamp : Wrap::repeat;
 }
 
-// Finds a file that a model names. Models name files where they were made, often on another machine, so that a file of
-// the same name beside the model serves too.
+// Finds a file that a model names; empty where it is not there. Models name files where they were made, often on
+// another machine, so that a file of the same name beside the model serves too.
 fs::path found_beside(const fs::path& model, std::string name) {
   std::replace(name.begin(), name.end(), '\\', '/');
   if (name.starts_with("file://")) name.erase(0, 7);
@@ -92,8 +92,8 @@ void ColorReader::remark(std::string text) {
     result_.remarks.push_back(std::move(text));
 }
 
-// assimp reads an OBJ file without its materials when their file is missing, says nothing, and makes up grey ones.
-// Where there is no such file, it tries one that is named as the model.
+// Finds out whether the materials of an OBJ file are there. Where their file is missing, assimp tries one that is named
+// as the model. Where that is missing too, it says nothing and makes up grey materials.
 void ColorReader::find_library() {
   constexpr std::size_t most_bytes = 1 << 20;  // the line stands before the first faces
   std::string begin(most_bytes, '\0');

@@ -23,7 +23,7 @@ struct FoundColors {
   // where a mesh has none. Empty where no mesh has any.
   std::vector<std::array<float, 2>> places;
   std::vector<std::string> remarks;  // on what is missing or not drawn
-  std::string found;                 // what there is, in words
+  std::string found;                 // which colours there are, in words; empty: none
 };
 
 class ColorReader {
@@ -65,7 +65,7 @@ class ColorReader {
   std::vector<bool> used_;   // by material
 };
 
-// Returns text of a file as one line that a terminal can show.
+// Returns the first line of a text, cut off after 200 bytes, as a terminal can show it.
 std::string one_line(std::string_view text);
 
 }  // namespace supple

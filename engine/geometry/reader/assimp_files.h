@@ -17,11 +17,11 @@ class AssimpFiles : public Assimp::DefaultIOSystem {
   bool Exists(const char* file) const override;
   Assimp::IOStream* Open(const char* file, const char* mode) override;
 
-  // The name of the last file that could not be opened; empty: there was none.
+  // Returns the name of the last file that could not be opened; empty: there was none.
   const std::string& refused() const { return refused_; }
 
  private:
-  // Returns the file's name, or its decoded one where that is there; empty: neither is a plain file.
+  // Returns the name of the plain file: the one given, or that with %20 and the like decoded; empty: there is neither.
   static std::string found(const char* file);
 
   const std::string file_;

@@ -26,7 +26,8 @@ void add_own(const aiString& assimp_name, std::vector<std::string>& names) {
   }
 }
 
-// Several primitives of a glTF mesh have its name and a number: "shirt-0".
+// Returns the name without the number that each of several primitives of a glTF mesh has behind it ("shirt-0"); empty
+// where there is no number.
 std::string without_number(const std::string& name) {
   const std::size_t end = name.find_last_not_of("0123456789");
   return end == std::string::npos || end == 0 || end + 1 == name.size() || name[end] != '-' ? "" : name.substr(0, end);

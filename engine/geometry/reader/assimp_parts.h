@@ -16,9 +16,9 @@ class PartReader {
   // Takes the names of a scene with all its nodes.
   void remember(const aiScene& scene);
 
-  // Returns the part of each vertex of all meshes of the same scene after its nodes were dropped, before it is
-  // triangulated. There are none where nothing has a name. A remark tells where the meshes are others than those that
-  // were remembered, so that the names are lost.
+  // Returns the part of each vertex of all meshes. joined: the remembered scene after its nodes were dropped, before it
+  // is triangulated. There are no parts where nothing has a name. There are none either, and a remark says so, where
+  // the meshes are not those that were remembered.
   SurfaceParts parts_of(const aiScene& joined, std::vector<std::string>& remarks) const;
 
  private:

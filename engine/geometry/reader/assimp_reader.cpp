@@ -42,8 +42,8 @@ void limit(decltype(RLIMIT_AS) resource, rlim_t soft, rlim_t hard) {
   ::setrlimit(resource, &value);
 }
 
-// A broken file can send assimp into an endless loop, so the time is limited, in proportion to the file's size; a sound
-// file needs a tenth of it.
+// Returns the processor time that assimp may take for a file, which grows with its size [s]. A broken file can send
+// assimp into an endless loop; a sound one needs a tenth of this time.
 rlim_t seconds_for(const char* path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
@@ -113,7 +113,7 @@ std::string lost_digits(const Soup& soup) {
       reach, step, box.extent().maxCoeff());
 }
 
-// Returns what is wrong with the mesh, or nothing when all is well.
+// Appends a mesh to the soup. Returns what is wrong with the mesh, or nothing when all is well.
 std::string append(const aiMesh& mesh, Soup& soup) {
   const auto first = std::int64_t(soup.positions.size() / 3);
   if (first + std::int64_t(mesh.mNumVertices) > stream::most_vertices) return "it has more than 15 million vertices";

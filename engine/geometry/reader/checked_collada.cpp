@@ -16,7 +16,7 @@ class ColladaChecker {
  public:
   ColladaChecker(std::string& bytes, const std::string& name) : bytes_(bytes), text_(bytes), name_(name) {}
 
-  // Makes points of decimal commas, which old exporters wrote, and returns whether there were any.
+  // Checks the file and replaces decimal commas, which old exporters wrote, by points. Returns whether there were any.
   bool run() {
     for (std::size_t at = text_.find('<'); at != std::string_view::npos; at = text_.find('<', at + 1)) {
       if (text_.substr(at).starts_with("<!--")) {
@@ -83,7 +83,7 @@ class ColladaChecker {
       refuse(head, fmt::format("a list announces {} numbers, and holds {}", count.substr(0, 40), held));
   }
 
-  // assimp reads beyond the end of a list where an accessor says so.
+  // Refuses an accessor that needs more numbers than its list holds: assimp would read beyond the end of the list.
   void check_accessors() const {
     for (const std::string_view head : accessors_) {
       const auto whole = [&](std::string_view name, long long missing) {
@@ -111,7 +111,7 @@ class ColladaChecker {
   }
 
   std::string& bytes_;
-  const std::string_view text_;  // the same
+  const std::string_view text_;  // the bytes as they are looked at
   const std::string& name_;
   std::map<std::string, long long> arrays_;  // how many numbers each list holds, by its id
   std::vector<std::string_view> accessors_;  // their tags

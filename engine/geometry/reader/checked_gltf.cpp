@@ -47,7 +47,8 @@ class GltfChecker {
   GltfChecker(Json& document, std::string_view inside, const std::filesystem::path& file)
       : document_(document), inside_(inside), file_(file) {}
 
-  // Returns whether the document was changed: assimp wants exactly the announced bytes of data inside it.
+  // Checks the document. Returns whether it was changed: where data inside it is longer than announced, the announced
+  // length is corrected, because assimp wants exactly that many bytes.
   bool run() {
     check_extensions();
     for (std::size_t b = 0; b < list("buffers").size(); ++b) check_buffer(b);
@@ -259,7 +260,8 @@ class GltfChecker {
       refuse(fmt::format("{}: {} is {}: {} numbers are wanted", where, key, found->dump().substr(0, 40), count));
   }
 
-  // A node that is among its own descendants would be read without end.
+  // Checks that what nodes name is there, and that no node is among its own descendants, which would be read without
+  // end.
   void check_nodes() const {
     const Json& nodes = list("nodes");
     std::vector<std::size_t> parents(nodes.size(), nodes.size());

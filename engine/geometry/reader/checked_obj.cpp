@@ -17,7 +17,7 @@ namespace {
 struct Listed {
   const char* what;
   long long count = 0;
-  long long largest = 0;  // that a face names, and where
+  long long largest = 0;  // the largest number that a face names, and where
   int line = 0, column = 0;
 };
 
@@ -32,7 +32,7 @@ class ObjChecker {
   CheckedSurface run() {
     while (rows_.next()) take_row();
     for (const Listed& list : lists_) {
-      // A file may name normals and places in textures of which it has none.
+      // Faces may name normals and texture coordinates in a file that has none of them.
       if (list.largest > list.count && (list.count > 0 || &list == lists_.data()))
         rows_.refuse(list.line, list.column,
                      fmt::format("a face names {} {}, but the file has {}", list.what, list.largest, list.count));
@@ -74,8 +74,10 @@ class ObjChecker {
     }
   }
 
-  // assimp reads the first word of an object's name alone, and forgets it where a group follows. Faces after a name
-  // that has been there before would go to the object before it, so that the name gets an end of its own.
+  // Writes the name of an object or a group. Of an object's name assimp reads only the first word, so its spaces are
+  // replaced; and assimp forgets the object where a group follows, so the line of the group has both names. Where an
+  // object's name comes again, assimp would give the faces after it to the object before that line, so the name gets
+  // characters that tell it from the earlier ones.
   void take_name(bool is_object) {
     std::string name;
     for (std::size_t k = 1; k < rows_.words().size(); ++k) {
@@ -92,7 +94,7 @@ class ObjChecker {
     result_.bytes += name + '\n';
   }
 
-  // Lines that decide neither shape nor colour are left out.
+  // Leaves out a line that decides neither shape nor colour, and notes what remarks should say of it.
   void pass_over(std::string_view key) {
     constexpr std::array surfaces = {"curv", "curv2", "surf", "bzp", "bsp", "cdc", "cdp", "res"};
     if (key == "l" || key == "p") ++lines_;
@@ -133,7 +135,7 @@ class ObjChecker {
     text += '\n';
   }
 
-  // list: 1 for a place in a texture, 2 for a normal.
+  // Takes a place in a texture (list: 1) or a normal (2).
   void take_further(std::size_t list) {
     const std::vector<RowWord>& words = rows_.words();
     const std::size_t count = words.size() - 1;
@@ -146,7 +148,7 @@ class ObjChecker {
     text += words[0].text;
     for (std::size_t k = 1; k <= count; ++k) {
       double value = rows_.number(words[k], list == 1 ? "a coordinate of a texture" : "a coordinate of a normal");
-      const bool is_odd = !std::isfinite(value) || std::abs(value) > 3.4e38;  // of no shape: it need not be refused
+      const bool is_odd = !std::isfinite(value) || std::abs(value) > 3.4e38;  // not refused: it decides no shape
       text += ' ' + (is_odd ? std::string("0") : plain_number(words[k].text, value));
     }
     text += count == 1 ? " 0\n" : "\n";
@@ -165,7 +167,7 @@ class ObjChecker {
     result_.bytes += '\n';
   }
 
-  // A corner is v, v/vt, v//vn or v/vt/vn.
+  // Checks a corner: v, v/vt, v//vn or v/vt/vn.
   void check_corner(const RowWord& word) {
     std::size_t begin = 0;
     for (std::size_t list = 0; list < 3; ++list) {
@@ -197,7 +199,7 @@ class ObjChecker {
   const Vec3 origin_;
   CheckedSurface result_;
   Bounds box_;
-  std::string object_;                  // its name as assimp reads it; empty: no line has named one
+  std::string object_;                  // the object's name as assimp reads it; empty: no line has named one
   std::map<std::string, int> objects_;  // how often each has been named
   std::array<Listed, 3> lists_ = {Listed{"vertex"}, Listed{"texture coordinate"}, Listed{"normal"}};
   long long faces_ = 0, small_ = 0, unknown_ = 0, lines_ = 0;

@@ -166,7 +166,7 @@ class OffChecker {
   const Vec3 origin_;
   CheckedSurface result_;
   Bounds box_;
-  std::vector<RowWord> words_;  // of the row that are not taken yet
+  std::vector<RowWord> words_;  // the words of the row that are not taken yet
   std::string kind_ = "OFF";
   std::size_t fewest_ = 3;  // numbers of a vertex
   bool has_places_ = false, has_colors_ = false, has_normals_ = false, weighted_ = false, is_plain_ = true;

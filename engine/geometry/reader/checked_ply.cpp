@@ -19,7 +19,7 @@ enum class Number { int8, uint8, int16, uint16, int32, uint32, float32, float64 
 struct Property {
   std::string name;
   Number type = Number::float32;
-  std::optional<Number> length;  // of a list
+  std::optional<Number> length;  // the type of a list's length; nothing: it is no list
 };
 
 struct Element {
@@ -33,10 +33,10 @@ enum class Encoding { text, little_endian, big_endian };
 struct Head {
   Encoding format = Encoding::text;
   std::vector<Element> elements;
-  std::string text;     // its lines, as they are
+  std::string text;     // the lines that PLY knows, as they are
   std::size_t end = 0;  // where the first element begins
   long long vertices = 0, faces = 0;
-  int unknown = 0;  // lines of the header
+  int unknown = 0;  // the number of other lines
 };
 
 std::size_t bytes_of(Number type) {
@@ -87,7 +87,7 @@ int axis_of(const Element& element, const Property& property) {
   return axis >= 0 && axis < 3 ? axis : -1;
 }
 
-// Nothing with a fraction can be taken off those.
+// Tells whether a coordinate is announced as a whole number, so that no origin with a fraction can be taken off it.
 bool has_whole_coordinates(const Head& head) {
   bool any = false;
   for (const Element& element : head.elements)
@@ -154,7 +154,7 @@ void check_head(const TextRows& rows, Head& head) {
   }
 }
 
-// Leaves `rows` after the header.
+// Reads and checks the header, after which `rows` goes on.
 Head take_head(TextRows& rows) {
   Head head;
   while (rows.next()) {
@@ -322,7 +322,7 @@ class PlyBinaryChecker {
     return 0;
   }
 
-  // Returns the place of a number and goes on after it.
+  // Returns the place of the next `count` numbers of a type, and goes on after them.
   std::size_t pass(const Element& element, long long row, std::size_t count, Number type) {
     if ((bytes_.size() - at_) / bytes_of(type) < count)
       throw InputError(name_, fmt::format("{} of '{}' announced, but the file ends in number {}", element.count,
@@ -363,7 +363,8 @@ class PlyBinaryChecker {
     box_.include(p);
   }
 
-  // Positions as doubles keep their digits; floats have lost theirs before.
+  // Takes the origin off all positions where they are doubles. Otherwise sets it to zero: floats have lost their digits
+  // before.
   void move_to(Vec3& origin) {
     if (std::ssize(places_) != 3 * head_.vertices) {
       origin = Vec3::Zero();
@@ -387,7 +388,7 @@ class PlyBinaryChecker {
   const Head& head_;
   const std::string name_;
   std::size_t at_;
-  std::vector<Place> places_;  // of coordinates in doubles
+  std::vector<Place> places_;  // the places of coordinates that are doubles
   Bounds box_;
   long long small_ = 0;
 };

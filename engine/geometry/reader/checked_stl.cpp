@@ -108,7 +108,7 @@ class StlTextChecker {
   long long facets_ = 0;
 };
 
-// Tells whether each edge of the facets is met by another one the other way round.
+// Tells whether facets are closed: each edge of one is an edge of another one the other way round. facets: their bytes.
 bool is_closed(std::string_view facets) {
   using Place = std::array<float, 3>;
   std::map<std::pair<Place, Place>, int> sides;

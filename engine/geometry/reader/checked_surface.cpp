@@ -22,8 +22,9 @@ Vec3 far_origin(const Bounds& box) {
 
 namespace {
 
-// Of formats whose numbers stand between spaces, assimp would read the part before a decimal comma alone. Names in
-// quotes may say anything. Texts of 16-bit characters have no such words, and assimp reads some of them.
+// Refuses decimal commas in formats whose numbers stand between spaces: assimp would read only the part before a comma.
+// Names in quotes may say anything. Texts of 16-bit characters, some of which assimp reads, have no such words, and
+// pass.
 CheckedSurface without_decimal_commas(std::string bytes, const std::string& name) {
   TextRows rows(bytes, name, {});
   while (rows.next()) {

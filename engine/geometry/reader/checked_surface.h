@@ -16,9 +16,9 @@ namespace supple {
 inline constexpr char space_in_name = '\x1e', end_of_name = '\x1f';
 
 struct CheckedSurface {
-  std::string bytes;  // assimp reads these in the file's place
-  // Taken off all positions in `bytes`, so that floats keep the shape of a body that is far from the origin [file's
-  // units].
+  std::string bytes;  // assimp reads these in the file's place; empty: it reads the file
+  // The place that is taken off all positions in `bytes`, so that floats keep the shape of a body that is far from the
+  // origin [file's units].
   Vec3 origin = Vec3::Zero();
   std::vector<std::string> remarks;
 };
@@ -28,7 +28,7 @@ struct CheckedSurface {
 // InputError with line and column, or with the accessor, where the file is no good.
 CheckedSurface checked_surface(const std::filesystem::path& file);
 
-// Checks one format each. bytes: the file's, without a byte-order mark.
+// These check one format each. bytes: the content of the file without a byte-order mark.
 CheckedSurface checked_obj(std::string bytes, const std::string& name);
 CheckedSurface checked_off(std::string bytes, const std::string& name);
 CheckedSurface checked_ply(std::string bytes, const std::string& name);

@@ -63,8 +63,9 @@ struct JpegErrors {
 
 void count_warning(j_common_ptr jpeg, int level) { jpeg->err->num_warnings += level < 0 ? 1 : 0; }
 
-// Decodes rows into `result`. A call of libjpeg may leave this function by a jump: nothing with a destructor lives
-// then, and the function stays one of its own, so that the jump finds no variable of it changed.
+// Decodes rows into `result`. A call of libjpeg may leave this function by a jump to decode(). So no local variable has
+// a destructor, and the function is not inlined: a variable of decode() that changed before the jump would have no
+// defined value after it.
 [[gnu::noinline]] void decode_rows(jpeg_decompress_struct& jpeg, const std::uint8_t* bytes, std::size_t count,
                                    std::int64_t most_pixels, ReadTexture& result) {
   jpeg_create_decompress(&jpeg);
@@ -118,7 +119,7 @@ ReadTexture read_jpeg(const std::uint8_t* bytes, std::size_t count, std::int64_t
 struct Source {
   const std::uint8_t* bytes;
   std::size_t left;
-  int first_request = 0;   // of stb's own buffer, which it fills as far as there are bytes
+  int first_request = 0;   // the size of stb's own buffer, which may be filled in part
   bool too_short = false;  // whether more was asked for than there is
 };
 

@@ -1,5 +1,5 @@
-// Reads PNG, JPEG, TGA and BMP pictures within bounds. A part of supple-read-surface; no other part of the program uses
-// libjpeg or stb.
+// Reads PNG, JPEG, TGA and BMP pictures within bounds. A part of supple-read-surface; no other part of the program
+// reads JPEG pictures or uses stb.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ struct ReadTexture {
   bool damaged = false;      // whether a part of it could not be read and is grey
 };
 
-// A picture of more than `most_pixels` is refused before memory is taken for it.
+// Reads a picture. One of more than `most_pixels` is refused before memory is taken for it.
 ReadTexture read_texture(const std::uint8_t* bytes, std::size_t count, std::int64_t most_pixels);
 
 }  // namespace supple

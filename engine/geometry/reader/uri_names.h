@@ -1,4 +1,4 @@
-// Names of files as models write them. A part of supple-read-surface.
+// Decodes names of files as models write them. A part of supple-read-surface.
 #pragma once
 
 #include <string>

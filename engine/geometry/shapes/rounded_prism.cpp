@@ -11,7 +11,7 @@
 namespace supple {
 namespace {
 
-constexpr double finest_turn = std::numbers::pi / 12;  // between two normals of what is round [rad]
+constexpr double finest_turn = std::numbers::pi / 12;  // the largest angle between neighbouring normals [rad]
 constexpr int bevel_steps = 6;
 
 // Describes a place on the outline of the hull, and the direction that points away from the hull there.
@@ -19,7 +19,7 @@ struct OutlinePoint {
   Eigen::Vector2d place, normal;
 };
 
-// Walks around the hull, anticlockwise. Where the outline turns, the normal turns in small steps.
+// Lists places around the hull, anticlockwise. At a corner, the normal turns in small steps.
 std::vector<OutlinePoint> outline_of(const std::vector<Eigen::Vector2d>& hull) {
   const std::size_t corners = hull.size();
   const auto normal_angle = [&](std::size_t i) {  // of the edge that begins at a corner

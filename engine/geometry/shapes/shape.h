@@ -1,8 +1,8 @@
 // A shape is a solid described by a signed distance field: primitives, rigid transforms, mirrored copies, unions, cuts
-// and smooth blends. One description serves for meshing at any resolution, for collisions and for drawing. Files
-// (scene/) and meshes (mesh.h) lie elsewhere. The distance is negative inside. Outside, it is exact for single
-// primitives other than the ellipsoid, and a bound of the right sign after blends and cuts; its zero set is always
-// exact.
+// and smooth blends. One description serves for meshing at any resolution, for collisions and for drawing. Gradients
+// and closest points are computed in shape_closest.cpp. Files (scene/) and meshes (mesh.h) lie elsewhere. The distance
+// is negative inside. Outside, it is exact for single primitives other than the ellipsoid, and a bound of the right
+// sign after blends and cuts; its zero set is always exact.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -128,7 +128,8 @@ struct Shape {
   // Returns a length such that a straight path shorter than twice this length cannot lead through the solid, except
   // across its edges; 0 where no such length is known.
   double half_thickness() const;
-  // Returns the same, or for closed surfaces what all but their thinnest twentieth have at least [m].
+  // Returns the same length, except for a closed surface: its half_thickness() is 0, and here it has half the thickness
+  // that all but its thinnest twentieth have at least [m].
   double usual_half_thickness() const;
 
   // Returns the tag of the last tagged part that holds the point; outside all parts, the tag of the nearest one.

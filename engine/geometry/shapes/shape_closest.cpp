@@ -25,8 +25,8 @@ Vec3 across(const Vec3& axis) {
   return unit(axis.cross(std::abs(axis.x()) < std::abs(axis.y()) ? Vec3::UnitX() : Vec3::UnitY()), Vec3::UnitX());
 }
 
-// Returns the direction from an axis through the origin to p. Where p lies on the axis up to round-off, whose direction
-// means nothing, it returns any direction at right angles to the axis.
+// Returns the direction from an axis through the origin to p, and any direction at right angles to the axis where p
+// lies on it up to round-off.
 Vec3 off_axis(const Vec3& p, const Vec3& axis) {
   const Vec3 along = unit(axis);
   const Vec3 radial = p - p.dot(along) * along;
@@ -46,7 +46,7 @@ Vec3 gradient_of(const Ellipsoid& e, const Vec3& p) {
   const double thinnest = e.radii.minCoeff(&thin);
   if (k1 < 1e-300) return Vec3::Unit(thin);
   const Vec3 of_k0 = p.cwiseQuotient(squares) / k0;
-  if (k0 < 1 && k0 * thinnest < k1) return thinnest * of_k0;  // here its distance is cut off
+  if (k0 < 1 && k0 * thinnest < k1) return thinnest * of_k0;  // here the thinnest axis limits the distance
   const Vec3 of_k1 = p.cwiseQuotient(squares.cwiseProduct(squares)) / k1;
   return ((2 * k0 - 1) * of_k0 - k0 * (k0 - 1) / k1 * of_k1) / k1;
 }
@@ -186,7 +186,7 @@ SurfacePoint closest_of(const Kind& primitive, const Vec3& p) {
 }
 SurfacePoint closest_of(const ClosedSurface& s, const Vec3& p) { return s.solid->closest(p); }
 
-// Handles a shape that is a single primitive, for which the closest point is exact.
+// Returns the exact closest point of a shape that is a single primitive; nothing for other shapes.
 std::optional<SurfacePoint> closest_of_one(const ShapeGroup& group, const Vec3& p) {
   if (group.parts.size() != 1) return std::nullopt;
   const ShapePart& part = group.parts.front();

@@ -31,7 +31,7 @@ bool is_union(const ShapeGroup& group) {
                      [](const ShapePart& part) { return part.combine == Combine::add && part.blend <= 0; });
 }
 
-// Adds the pieces of a group in its own frame, each with the radius in its parent's.
+// Adds the pieces of a group. They and their radii are in the frame of the group.
 void add_pieces(const ShapeGroup& group, std::vector<ShapePiece>& pieces) {
   if (!is_union(group)) {
     pieces.emplace_back().shape.root = group;

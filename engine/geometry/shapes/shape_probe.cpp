@@ -5,7 +5,7 @@
 namespace supple {
 namespace {
 
-// The part that is a whole shape, where that is one closed surface; null otherwise.
+// Returns the part that is the whole shape, where it is one closed surface; null otherwise.
 const ShapePart* lone_surface(const Shape& shape) {
   if (shape.root.parts.size() != 1) return nullptr;
   const ShapePart& part = shape.root.parts.front();

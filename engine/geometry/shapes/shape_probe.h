@@ -1,5 +1,5 @@
-// Asks a shape about many places near each other. A shape that is one closed surface from a file answers faster when it
-// knows what it has answered to a place nearby; other shapes answer as they always do.
+// Asks a shape about many places near each other. A shape that is one closed surface from a file answers faster where
+// it remembers its answer about a place nearby; for other shapes the memory makes no difference.
 #pragma once
 
 #include <optional>
@@ -28,23 +28,24 @@ class ShapeProbe {
   // Returns a bound below the distance of p that follows from earlier answers; minus infinity where nothing follows.
   double certain_distance(const Vec3& p, const QueryMemory& near) const;
 
-  // Tells whether the distance changes no faster than the point moves, and its sign where it is 0 alone: from one value
-  // then follow the signs around.
+  // Tells whether the distance changes no faster than the point moves, and changes its sign only where it is 0. The
+  // distance of one point then tells the sign at all points that are nearer to it than that.
   bool is_exact() const { return solid_ != nullptr && solid_->is_closed(); }
 
   // Tells whether the shape can say where a straight way enters it.
   bool knows_entries() const { return solid_ != nullptr; }
-  // Returns which share of the way from a, which lies outside, to b leads to where it first enters; nothing when it
-  // does not. Only for shapes that know entries.
+  // Returns the share of the way from a, which lies outside, to b after which the way first enters the shape; nothing
+  // where it does not enter. Only for shapes that know entries.
   std::optional<double> entry(const Vec3& a, const Vec3& b) const { return solid_->entry(local(a), local(b)); }
 
-  // These tell how the surface carries what is near it along in a step, in the shape's frame: a place, a bound above
-  // the way of any place, and the rigid motion near a place. Only for shapes that know entries.
+  // These return, in the shape's frame, how the surface carries along in a step what is near it: the place to which p
+  // is carried, a bound above the way of any place, and the rigid motion near p. Only for shapes that know entries.
   Vec3 carried(const Vec3& p, const SurfaceMove& move) const;
   double most_carried(const SurfaceMove& move) const { return surface_->scale * move.most_carried(); }
   Eigen::Isometry3d motion_near(const Vec3& p, const SurfaceMove& move) const;
 
-  // Returns the solid whose answers a memory keeps; null for other shapes, which have no use for one.
+  // Returns the solid whose answers a memory keeps; null for shapes that are not one closed surface, for which a memory
+  // is of no use.
   std::shared_ptr<const TriangleSolid> remembered() const;
 
  private:

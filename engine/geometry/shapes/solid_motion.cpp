@@ -54,7 +54,7 @@ class NearPoints {
   std::unordered_map<std::uint64_t, std::vector<std::int32_t>> cells_;
 };
 
-// Names the vertices beside each one.
+// Returns, for each vertex, the vertices with which it shares an edge.
 std::vector<std::vector<std::int32_t>> beside_each(const TriMesh& mesh) {
   std::vector<std::vector<std::int32_t>> next(std::size_t(mesh.points.rows()));
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
@@ -104,8 +104,8 @@ SolidMotion::SolidMotion(const ClosedSurface& surface, const std::filesystem::pa
   bind(placed, {set_up.placed(raw.points), raw.triangles}, close, options.thickness, name);
 }
 
-// vertices: of the file. read: its triangles, with one vertex or several for each of the file's. close: the distance
-// within which two places are one [m].
+// Finds what each vertex of the solid follows. vertices: those of the file. read: its triangles as they were read, with
+// one vertex or several for each of the file's. close: the distance within which two places are one [m].
 void SolidMotion::bind(const Positions& vertices, const TriMesh& read, double close, double thickness,
                        const std::string& name) {
   const NearPoints all(vertices, {}, close);
@@ -143,7 +143,7 @@ void SolidMotion::bind(const Positions& vertices, const TriMesh& read, double cl
   }
 }
 
-// Returns the sums of the area vectors of the triangles around each vertex.
+// Returns, for each vertex, twice the sum of the area vectors of its triangles.
 Positions SolidMotion::normals_of(const Positions& file) const {
   Positions normals = Positions::Zero(file.rows(), 3);
   for (Eigen::Index t = 0; t < triangles_.rows(); ++t) {

@@ -14,15 +14,15 @@ namespace supple {
 
 class SolidMotion {
  public:
-  // file: the surface's OBJ file, from which `surface` was made as the options say. name: of the motion, for messages.
-  // Throws InputError where the motion has other vertices than the file, where the solid is one that cannot follow
-  // them, and where a frame has no extent.
+  // file: the surface's OBJ file, from which `surface` was made as the options say. name: what messages call the
+  // motion. Throws InputError where the motion has other vertices than the file, where the solid is one that cannot
+  // follow them, and where a frame has no extent.
   SolidMotion(const ClosedSurface& surface, const std::filesystem::path& file, const SurfaceOptions& options,
               const VertexMotion& motion, const std::string& name);
 
   int frames() const { return static_cast<int>(frames_.size()); }
   // Returns the solid at a time in frames; between two frames, each vertex moves evenly and straight. Before the first
-  // and after the last frame it is that frame's.
+  // frame it is that of the first one, and after the last frame that of the last one.
   std::shared_ptr<const TriangleSolid> solid_at(double frame) const;
   // Returns the vertices of that solid, in its order [m].
   Positions points_at(double frame) const;
@@ -36,7 +36,7 @@ class SolidMotion {
   };
   struct Beside {  // a vertex that keeps its place beside one of the file, in axes that turn with it
     Eigen::Index vertex;
-    std::int32_t near, next;  // vertices of the file: that one, and one beside it
+    std::int32_t near, next;  // vertices of the file: the one that it lies beside, and a neighbour of that one
     Vec3 offset;              // [m]
   };
 

@@ -11,7 +11,7 @@ constexpr double precision = 1e-3;  // of a place, over the longest edge
 constexpr int most_steps = 12;
 constexpr int most_halvings = 3;
 
-// Returns which share of the way from a to b leads to its point that is closest to p.
+// Returns the share of the way from a to b at which it is closest to p.
 double along_edge(const Vec3& a, const Vec3& b, const Vec3& p) {
   const Vec3 way = b - a;
   const double squared = way.squaredNorm();
@@ -20,7 +20,8 @@ double along_edge(const Vec3& a, const Vec3& b, const Vec3& p) {
 
 }  // namespace
 
-// Tries the foot on the plane, and then the three edges: what lies outside of the triangle is closest to one of them.
+// Tries the foot of the perpendicular from p to the plane. Where it lies outside of the triangle, the closest point is
+// on one of the three edges.
 Vec3 closest_weights(const TriangleCorners& corners, const Vec3& p) {
   const Vec3 u = corners[1] - corners[0], v = corners[2] - corners[0], d = p - corners[0];
   const Vec3 n = u.cross(v);
@@ -95,9 +96,9 @@ double TriangleInShape::distance_at_nearest_corner() const {
   return shape_.closest(corners_[nearest_corner_], near_).distance;
 }
 
-// Projects onto the triangle, in turns, what lies a little deeper than the closest point of the surface: outside, these
-// are alternating projections onto two convex sets; inside, it is a step down the slope. It is shortened until the
-// distance decreases.
+// Goes again and again from a place to the triangle's point that is closest to a target a little deeper than the
+// surface's closest point. Outside, these are alternating projections onto two convex sets; inside, each is a step down
+// the slope. A step is shortened until the distance decreases.
 TrianglePlace TriangleInShape::descend_from(TrianglePlace place) const {
   for (int step = 0; step < most_steps; ++step) {
     const double outside = std::max(0.0, place.surface.distance), inside = std::max(0.0, -place.surface.distance);

@@ -33,14 +33,16 @@ class TriangleInShape {
   // Returns what the shape answers at the centre.
   const TrianglePlace& center() const { return center_; }
 
-  // Returns a bound below the distances of all points of the triangle: for a convex shape that of the plane through the
-  // surface's point that is closest to the centre.
+  // Returns a bound below the distances of all points of the triangle from a convex shape: the least distance of a
+  // corner from the plane through the surface's point that is closest to the centre. It is no bound for other shapes.
   double bound() const { return bound_; }
-  // Returns the distance at the corner where that plane is nearest, which is never below the bound.
+  // Returns the distance from the shape at the corner that has the least distance from that plane. For a convex shape
+  // it is never below the bound.
   double distance_at_nearest_corner() const;
 
-  // Descends to places of least distance from the centre and from each corner; those within a tenth of the longest edge
-  // of an earlier one are left out. For a convex shape each of them is a place of the least distance.
+  // Holds the places of least distance to which the descents from the centre and from each corner lead, without those
+  // within a tenth of the longest edge of an earlier one. For a convex shape each of them is a place of the least
+  // distance.
   struct Descent {
     std::array<TrianglePlace, 4> places;
     int count = 0;              // of these, 1 to 4
