@@ -14,8 +14,8 @@ void say(std::FILE* stream, std::string_view text);
 // Marks "supple:" (bold red) and "warning:" (bold) wherever a line begins with them.
 std::string highlighted(std::string_view text);
 
-// Tells whether to colour: on a terminal, without NO_COLOR (https://no-color.org: set and not empty), and with a TERM
-// other than "dumb". The last two arguments are the environment's values; null means that the variable is not set.
+// Tells whether to colour: on a terminal whose TERM is set and not "dumb", unless NO_COLOR is set and not empty
+// (https://no-color.org). The last two arguments are the environment's values; null means that the variable is not set.
 bool may_colour(bool terminal, const char* no_color, const char* term);
 
 }  // namespace supple

@@ -12,7 +12,7 @@
 namespace supple {
 namespace {
 
-constexpr long long largest_part = 1'000'000'000;  // of a fraction that ffmpeg reads: it keeps both parts in 32 bits
+constexpr long long largest_part = 1'000'000'000;  // for numerator and denominator: ffmpeg keeps both in 32 bits
 
 struct Fraction {
   long long numerator, denominator;
@@ -29,8 +29,8 @@ std::optional<Fraction> television_rate(double per_second) {
   return std::nullopt;
 }
 
-// Returns the simplest fraction that is the same number in double precision, or the nearest one with parts that are not
-// too large: the convergents of the continued fraction, one after the other.
+// Returns the simplest fraction that is the same number in double precision, or the nearest one whose parts are at most
+// largest_part. Tries the convergents of the continued fraction, one after the other.
 Fraction simplest(double value) {
   Fraction before{0, 1}, best{1, 0};
   double rest = value;

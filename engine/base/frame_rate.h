@@ -10,11 +10,13 @@ namespace supple {
 
 class FrameRate {
  public:
-  // Takes a number of frames a second, above 0. What is usually written for a rate of television (23.976, 29.97, 59.94)
-  // becomes that rate, N x 1000/1001; other numbers become the simplest fraction that is as exact as they are.
+  // Takes a number of frames a second, from 1e-9 to 1e9. What is usually written for a rate of television (23.976,
+  // 29.97, 59.94) becomes that rate, N x 1000/1001; other numbers become the simplest fraction that is as exact as they
+  // are.
   FrameRate(double per_second);  // implicit, because most rates are whole numbers
 
-  // Reads "30000/1001", "24" or "23.976"; returns nothing where the text is none of these or not above 0.
+  // Reads "30000/1001", "24" or "23.976"; returns nothing where the text is of another form, or a number in it is out
+  // of range.
   static std::optional<FrameRate> parse(std::string_view text);
 
   operator double() const { return static_cast<double>(numerator_) / denominator_; }  // frames a second
@@ -24,7 +26,7 @@ class FrameRate {
   // Returns the time that so many frames take [s]: the nearest number to the exact one, without drift.
   double time_of(long long frames) const { return static_cast<double>(frames * denominator_) / numerator_; }
 
-  // Returns the rate of a film that has one frame in so many.
+  // Returns the rate of a film that keeps one frame in `every`.
   FrameRate over(int every) const;
 
   // Gives "30", "12.5" or "30000/1001", as parse() and ffmpeg read it.

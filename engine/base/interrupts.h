@@ -1,5 +1,6 @@
 // Counts requests from outside that the program should end: SIGINT, SIGTERM, and SIGHUP when the terminal is gone. Long
-// work asks for them between two of its parts. Not here: keeping them away from code (signals.h).
+// work asks for them between two of its parts. Not here: how signals are kept away from code that must not receive them
+// (signals.h).
 #pragma once
 
 namespace supple {
@@ -7,7 +8,7 @@ namespace supple {
 // Returns true once a request has come. SIGHUP does not count under nohup.
 bool interrupted();
 
-// From now on counts requests instead of ending at the first one. The third one ends the program at once.
+// Counts requests from now on, so that the first one does not end the program. The third one ends it at once.
 void catch_interrupts();
 
 }  // namespace supple

@@ -26,8 +26,8 @@ template <class R>
   __builtin_memcpy(to, &row, sizeof row);
 }
 
-// Joins rows side by side. (A function that returned so wide a vector would be one that other files call with other
-// registers in mind.)
+// Joins two rows side by side in `out`. (They are not returned, because the registers in which a function returns so
+// wide a vector depend on the instruction set of the file.)
 template <class T>
 [[gnu::always_inline]] inline void join(const Wide<T, 4>& a, const Wide<T, 4>& b, Wide<T, 8>& out) {
   out = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
@@ -37,7 +37,7 @@ template <class T>
   out = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
 
-// Transposes each four columns of four rows.
+// Takes four rows as blocks of 4 x 4 numbers side by side, and transposes each block in its place.
 template <class T>
 [[gnu::always_inline]] inline void transpose(Wide<T, 4> (&r)[4]) {
   const Wide<T, 4> low01 = __builtin_shufflevector(r[0], r[1], 0, 4, 1, 5),
@@ -98,7 +98,7 @@ template <class V>
   } else {
     Wide<T, V::size> r[4];
     for (int i = 0; i < 4; ++i) {
-      // Elements i, i + 4, ... come into one register, in which each four columns are transposed.
+      // r[i] gets rows i, i + 4, ... side by side: each becomes row i of a 4 x 4 block that transpose() turns.
       if constexpr (V::size == 16) {
         Wide<T, 8> low, high;
         join<T>(row[i], row[i + 4], low);
@@ -115,7 +115,7 @@ template <class V>
   }
 }
 
-// Does the opposite; the fourth number of each row is 0.
+// Does the opposite of from_rows(); the fourth number of each row is 0.
 template <class V>
 [[gnu::always_inline]] inline void to_rows(const V (&in)[3], Quad<typename V::value_type> (&row)[V::size]) {
   using T = typename V::value_type;

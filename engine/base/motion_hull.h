@@ -1,5 +1,5 @@
-// Keeps the outermost points of a motion: in each of some hundred directions the furthest one. A camera that shows
-// these shows all of the motion, but for less than a hundredth of its size, and a run's record has room for them.
+// Keeps the outermost points of a motion: the furthest one in each of some four hundred directions. A camera that shows
+// these shows all of the motion, but for less than a hundredth of its size, and they are few enough for a run's record.
 #pragma once
 
 #include <span>

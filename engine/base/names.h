@@ -45,7 +45,7 @@ constexpr std::string_view name_of(E value) {
   return Names<E>::table[static_cast<std::size_t>(value)].text;
 }
 
-// Returns nothing when no value has this name.
+// Returns the value with this name; nothing when there is none.
 template <Named E>
 constexpr std::optional<E> value_named(std::string_view text) {
   for (const Name<E>& name : Names<E>::table) {

@@ -7,7 +7,7 @@ namespace supple {
 
 enum class PicturePass {
   depth,      // distance along the viewing direction [m]
-  normals,    // unit vector across the surface, in the world
+  normals,    // unit normal of the surface, in the world
   masks,      // share of the pixel that each body covers, one picture a body
   motion,     // way to the place in the next picture, to the right and up [pixels]
   positions,  // place in the world [m]

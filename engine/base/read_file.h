@@ -10,8 +10,8 @@ namespace supple {
 
 inline constexpr std::uintmax_t usual_most_bytes = 1'000'000'000;
 
-// Returns the file's content. Throws InputError that names the file: there is no such file, it is not a regular file,
-// it is larger than `most_bytes`, or the system's reason why it cannot be read.
+// Returns the file's content. Throws InputError that names the file and says what is wrong: there is no such file, it
+// is not a regular file, it is larger than `most_bytes`, or it cannot be read, with the system's reason.
 std::string read_file(const std::filesystem::path& path, std::uintmax_t most_bytes = usual_most_bytes);
 
 // Returns the content of a text file without the byte-order mark of UTF-8 that some editors put before it. Throws

@@ -5,9 +5,9 @@
 
 namespace supple {
 
-// While one of these objects lives, SIGINT, SIGTERM and SIGHUP are blocked in its thread, and also, for their whole
-// life, in the threads that it starts: another thread receives the signals, or they stay pending. The destructor
-// restores the handlers of SIGTERM and SIGABRT, which code in between may have replaced.
+// While one of these objects lives, SIGINT, SIGTERM and SIGHUP are blocked in the thread that made it. Threads that are
+// started from there meanwhile have them blocked for their whole lives. Another thread receives the signals, or they
+// stay pending. The destructor restores the handlers of SIGTERM and SIGABRT, which code in between may have replaced.
 class BlockedSignals {
  public:
   BlockedSignals() {

@@ -11,12 +11,12 @@
 namespace supple {
 
 struct SlowWork {
-  UserCache cache;                               // keeps the results; the default keeps nothing
-  std::function<void(const std::string&)> tell;  // hears what is being made, and how far it is; empty: nobody does
+  UserCache cache;                               // where results are kept; the default keeps nothing
+  std::function<void(const std::string&)> tell;  // is called with what is being made, and how far it is; may be empty
 };
 
-// Returns what is kept under the name, or makes it and keeps it. decode: a function from bytes to an optional result,
-// of which bytes_of makes the bytes.
+// Returns the result that is kept under the name, or else what make() returns, which is then kept. decode: a function
+// from bytes to an optional result; bytes_of(result) must give these bytes.
 template <class Decode, class Make>
 auto kept_or_made(const UserCache& cache, const std::string& name, const Decode& decode, const Make& make) {
   if (const auto bytes = cache.find(name)) {

@@ -20,7 +20,7 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 // Gives "mu, lambda or nu".
 std::string word_list(const std::vector<std::string>& words);
 
-// Gives "'collar', 'left sleeve' and 3 more": each name once, in the order of their letters, and at most thirty.
+// Gives "'collar', 'left sleeve' and 3 more": each name once, in the order of the alphabet, at most thirty of them.
 std::string name_list(std::vector<std::string> names);
 
 // Returns the text with its ASCII capitals made small.

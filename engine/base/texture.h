@@ -17,7 +17,8 @@ struct Texture {
   std::vector<std::uint8_t> rgb;  // sRGB, rows from the top
 };
 
-// Describes the colour at a vertex, or at a corner of a triangle. All bytes count, so that equal ones can be compared.
+// Describes the colour at a vertex, or at a corner of a triangle. It has no padding, so that two of them can be
+// compared byte by byte.
 struct SurfaceColor {
   float red = 1, green = 1, blue = 1;  // linear; they multiply the texture
   std::int32_t texture = -1;           // number among the surface's textures; -1: none

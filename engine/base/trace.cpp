@@ -114,7 +114,8 @@ struct ThreadState {
 };
 constinit thread_local ThreadState self{};
 
-// Holds the thread's share in its buffer and gives it back when the thread ends.
+// Holds a thread's ownership of its buffer, which it shares with the registry. When the thread ends, the buffer is
+// marked as ended.
 struct Share {
   std::shared_ptr<Buffer> buffer;
   ~Share() {

@@ -18,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// An entry's file has the signature, the name and the content with their lengths before them, and the XXH64 of it all.
+// An entry's file has the signature, then the name and the content, each with its length before it, and then the XXH64
+// of all this.
 constexpr std::string_view signature = "supple cache 1\n";
 constexpr const char* suffix = ".entry";
 constexpr const char* unfinished_suffix = ".part";

@@ -1,7 +1,7 @@
 // A user cache keeps what takes long to make, such as meshes, in files from run to run. An entry is found by a name
-// that says all that its content depends on; the running program is always part of it, so that a build finds only what
-// it has made itself. Nothing but time depends on the cache: an entry that is missing or damaged, or cannot be written,
-// is made again by the caller. Several programs may use one folder at the same time.
+// that says all that its content depends on; the running program is always part of the name, so that a build finds only
+// what it has made itself. Nothing but time depends on the cache: an entry that is missing or damaged, or cannot be
+// written, is made again by the caller. Several programs may use one folder at the same time.
 #pragma once
 
 #include <cstdint>
@@ -26,10 +26,11 @@ class UserCache {
   const std::filesystem::path& folder() const { return folder_; }  // empty: nothing is kept
   std::uintmax_t most_bytes() const { return most_bytes_; }
 
-  // Returns the content that was kept under this name, and marks it as used.
+  // Returns the content that was kept under this name, and marks it as used; nothing where there is none.
   std::optional<std::string> find(std::string_view name) const;
 
-  // Keeps a content, in the place of an earlier one of this name. Other programs see either of them whole.
+  // Keeps a content under a name, in the place of an earlier one. Other programs see either the earlier or the new
+  // content, and never a part.
   void keep(std::string_view name, std::string_view content) const;
 
   // Returns the space that all entries take now [bytes].

@@ -12,8 +12,8 @@ struct CgScratch {
 
 // Brings x close to H^-1 b in at most `iterations` iterations, fewer once |r| <= tolerance |b|. When it meets p^T H p
 // <= 0, it stops with the present x, or with the preconditioned b when there is no x yet (Gast et al. 2015,
-// "Optimization integrator for large time steps", section 4). multiply(v, result) and precondition(r, z) work on Eigen
-// vectors.
+// "Optimization integrator for large time steps", section 4). Returns the number of iterations. multiply(v, result)
+// sets the result to H v, and precondition(r, z) sets z to the preconditioned r.
 template <class Multiply, class Precondition>
 int conjugate_gradients(const Eigen::VectorXd& b, Eigen::VectorXd& x, int iterations, double tolerance,
                         const Multiply& multiply, const Precondition& precondition, CgScratch& s) {

@@ -17,8 +17,8 @@ struct CornerDerivatives {
   V block[6];
 };
 
-// Adds the fibres' part: with n = F d and c = grad N . d, c V kappa (1 - 1/l) n and c^2 V kappa ((1 - 1/l) (1 - n n^T /
-// l^2) + n n^T / l^2), where l = |n|; in the block 1 - 1/l is not less than zero.
+// Adds the fibres' part. With n = F d, l = |n| and c = grad N . d, the force gets c V kappa (1 - 1/l) n, and the block
+// gets c^2 V kappa ((1 - 1/l) (1 - n n^T / l^2) + n n^T / l^2), where 1 - 1/l counts as zero if it is less.
 template <class V>
 void add_fibre_corner(const Fibre& fibre, const Matrix3<V>& f, const V (&gradient)[3], const V& volume,
                       CornerDerivatives<V>& sums) {
@@ -102,8 +102,9 @@ CornerDerivatives<V> corner_by_stretches(const M& material, const Matrix3<V>& f,
   return result;
 }
 
-// Finds the derivatives at corner 1. The block is that of the element's Hessian where it is positive semi-definite
-// (Sylvester's criterion), else that of the nearest such Hessian. fibre: null for none.
+// Finds the derivatives at corner 1. The block is that of the element's nearest positive semi-definite Hessian; of a
+// material that is a formula in F, it is that of the Hessian itself wherever this block is positive semi-definite
+// (Sylvester's criterion). fibre: null for none.
 template <class M, class V>
 CornerDerivatives<V> tetrahedron_corner(const M& material, const Fibre* fibre, const V (&x)[4][3],
                                         const V (&field)[Tetrahedron::fields]) {

@@ -83,8 +83,9 @@ void proximal_stretches(const M& material, const V& k, const V (&goal)[3], V (&s
   }
 }
 
-// Makes the local step of a spring whose stiffness is its weight, by that stiffness: z = v of length l with v = d + u,
-// where l minimises (l - rest)^2 + (l - |v|)^2. At the start the multipliers become the tension of d. force: d - z + u.
+// Makes the local step of a spring whose weight is its stiffness; all is divided by that stiffness. z has the direction
+// of v = d + u and the length l that minimises (l - rest)^2 + (l - |v|)^2. At the start, the multipliers become the
+// tension of d. force: d - z + u with the new u, and at the start that tension.
 template <class V>
 void spring_step(const V& rest, const V (&d)[3], bool start, V* u, V (&force)[3]) {
   using std::max;
@@ -103,9 +104,9 @@ void spring_step(const V& rest, const V (&d)[3], bool start, V* u, V (&force)[3]
 }  // namespace proximal_detail
 
 // Makes the local step at x, or with `start` sets the multipliers to what they are at a minimum at x: the stress over
-// k. u: the multipliers before, which become those after. force: k V (F - z + u) grad N of corners 1 to 3, the slope of
-// the energy that the global step minimises; at the start z = F, and it is that of psi [N]. k: weight of the element's
-// term in A [Pa].
+// k. u: the multipliers before, which become those after. force: k V (F - z + u) grad N of corners 1 to 3, with the new
+// u [N]: the slope of the energy that the global step minimises. At the start z = F, and this is the slope of V psi. k:
+// weight of the element's term in A [Pa].
 template <class M, class V>
 void tetrahedron_proximal(const M& material, const Fibre* fibre, const V& k, const V (&x)[4][3],
                           const V (&field)[Tetrahedron::fields], bool start, V (&u)[most_multipliers],

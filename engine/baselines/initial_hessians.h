@@ -34,7 +34,8 @@ struct HessianSource {
     in_pose,      // the projected Hessians of the elements at the first iterate, with contacts
   } elements;
   int searches;  // number of searches from one factorisation to the next; 0: it is made once
-  // How it turns: by the rotation that the elements around each vertex have made since it was made.
+  // How the matrix turns in between: at each vertex, by the mean rotation of the elements around it since the matrix
+  // was made.
   enum class Turning { none, to_first_iterate, to_start } turning;
 };
 
@@ -67,10 +68,10 @@ class HessianInverse final : public InitialInverse {
   void turn_elements(const Model& model, const Positions& x);
 
   HessianSource source_;
-  ElementMatrices rest_, turned_;  // empty unless the elements are turned ones
+  ElementMatrices rest_, turned_;  // empty unless the source has turned_rest
   HessianMatrix hessian_;
   ChangingFactor factor_;
-  std::vector<Mat3> made_, now_, warp_;  // rotations of the free vertices; empty unless it turns
+  std::vector<Mat3> made_, now_, warp_;  // rotations of the free vertices; empty unless the matrix turns
   long searches_ = 0;
 };
 

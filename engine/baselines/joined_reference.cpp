@@ -72,7 +72,7 @@ class Descent {
     return is_solved();
   }
 
-  // The estimates are those before the last iteration.
+  // Tells whether both estimates, which are those before the last iteration, are below their targets.
   bool is_solved() {
     return error_of(w_.report.remaining_estimate, reached_ + w_.report.decrease) < enough_energy &&
            motion_ahead(model_, inputs_, q_, w_) < enough_motion;

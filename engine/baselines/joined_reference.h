@@ -25,8 +25,8 @@ struct JoinedErrors {
   bool converged = false;
 };
 
-// Measures the step of a joined model. `before` and `after` are the states around it; anchors and memory may be empty.
-// workspace: scratch memory for the reference alone.
+// Measures the step of a joined model. `before` and `after` are the states around it; their anchors and memory may be
+// empty. workspace: scratch memory for the reference alone.
 JoinedErrors joined_errors(const Model& model, const StepInputs& inputs, const State& before, const State& after,
                            OpenWorkspace& workspace);
 

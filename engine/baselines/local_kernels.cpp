@@ -44,7 +44,8 @@ void corners(const ElementChunk& chunk, const double* x, double* out) {
       *chunk.material);
 }
 
-// Adds the gradient over corners 1 and on, and its negative sum over corner 0, to the list's forces.
+// Adds a gradient to the forces on the chunk's list of vertices. It is given for corners 1, 2, ...; minus its sum acts
+// on corner 0.
 template <int count>
 void scatter(const ElementChunk& chunk, std::size_t first, const Lanes (&gradient)[count][3], double* force) {
   alignas(64) double number[count][3][lanes];
@@ -63,7 +64,8 @@ void scatter(const ElementChunk& chunk, std::size_t first, const Lanes (&gradien
   }
 }
 
-// Calls step(u, force) for the multipliers of the register whose first lane is `first`, and stores both.
+// Calls step(u, gradient) for the register whose first lane is `first`, stores its multipliers, and adds the gradient
+// to the forces.
 template <int count, class Step>
 void step_register(const ElementChunk& chunk, std::size_t first, double* multipliers, double* force, const Step& step) {
   double* stored = multipliers + first / block_width * most_multipliers * block_width + first % block_width;

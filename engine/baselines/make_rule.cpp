@@ -27,7 +27,7 @@ std::unique_ptr<InitialInverse> initial_inverse(const Method& method, const Mode
     case StartMatrix::tangent:
     case StartMatrix::turned_hessian: break;  // no method has them (problem_of)
     case StartMatrix::hessian:
-    case StartMatrix::vertex_blocks: break;  // their rules hold them; no pairs of L-BFGS correct them
+    case StartMatrix::vertex_blocks: break;  // the rules of Newton's method and of vertex blocks hold these
   }
   return nullptr;
 }

@@ -10,11 +10,11 @@ namespace supple {
 namespace {
 
 constexpr int newton_iterations = 100;
-constexpr int first_iterations = 300;  // of L-BFGS before it: cheap, and near a minimum in contact often all it takes
-constexpr int check_iterations = 300;  // of L-BFGS after it
+constexpr int first_iterations = 300;  // of L-BFGS, before Newton's: cheap, and often enough near a minimum in contact
+constexpr int check_iterations = 300;  // of L-BFGS after Newton's method
 constexpr int slow_iterations = 5000;  // of L-BFGS where Newton's line search gives up (a crease of the contact set)
-// The slope of a direction bounds what it can still gain, to within a small factor. This share is far below the digits
-// that a report shows.
+// A minimisation ends where the slope of its direction is below this share of g(y) - g(x). The slope bounds, to within
+// a small factor, what is left to gain, which is then far below the digits that a report shows.
 constexpr double digits = 1e-12;
 
 StepInputs thorough(const StepInputs& inputs, int iterations, int history) {

@@ -11,10 +11,10 @@ namespace supple {
 // Holds the lowest point that can be found below a given point.
 struct Minimum {
   double below_y = 0;    // g(y) - g*, a sum of small differences [J]
-  double below_end = 0;  // g(x) - g* of the point that the search began at [J]
-  Positions x;           // where [m]
+  double below_end = 0;  // g - g* at the point where the search began [J]
+  Positions x;           // positions at the minimum [m]
   // Tells whether the Hessian there, without any projection, has a Cholesky factor. A body that is at the edge of a
-  // contact, or has springs or fibres under compression, may be at a minimum where it has none.
+  // contact, or has springs or fibres under compression, may be at a minimum where the Hessian has none.
   bool positive_definite = false;
 };
 
@@ -33,14 +33,14 @@ class Reference {
   // Holds the errors of a step.
   struct StepErrors {
     std::optional<double> error;  // of equation 12; empty where g(y) - g* is round-off
-    double motion = 0;            // the error of motion (sim/measures/measures.h)
+    double motion = 0;            // the error of motion (sim/model/motion_error.h)
   };
-  // Computes error(x_k) = (g(x_k) - g*) / (g(y) - g*). `before` and `after` are the states around the step. g* is what
-  // minimum() finds when it continues from x_k. Both differences are sums of small ones, so that small errors keep
-  // their digits.
+  // Returns the errors of a step: that of equation 12, error(x_k) = (g(x_k) - g*) / (g(y) - g*), and that of motion.
+  // `before` and `after` are the states around the step. g* is what minimum() finds when it continues from x_k. Both
+  // differences are sums of small ones, so that small errors keep their digits.
   StepErrors step_errors(const Model& model, const StepInputs& inputs, const State& before, const State& after,
                          OpenWorkspace& workspace);
-  // Returns the first of them.
+  // Returns the error of equation 12 alone.
   std::optional<double> step_error(const Model& model, const StepInputs& inputs, const State& before,
                                    const State& after, OpenWorkspace& workspace) {
     return step_errors(model, inputs, before, after, workspace).error;
@@ -51,11 +51,12 @@ class Reference {
   std::unique_ptr<Parts> parts_;
 };
 
-// Returns the energy, friction included, of the contacts that are found again at x, after begin_step [J].
+// Returns the energy, friction included, of the contacts that are found anew at x [J]. begin_step() must have been
+// called for the step.
 double contact_energy_at(const Model& model, const StepInputs& inputs, const Positions& x, OpenWorkspace& workspace);
 
-// Returns g(y) - g(x) of a step from `before`, with handles at their targets and at each point with the contacts found
-// there [J]. Leaves x in workspace.current.x.
+// Returns g(y) - g(x) of a step from `before` [J], with handles at their targets, and at both points with the contacts
+// that are found there. Leaves x in workspace.current.x.
 double gained(const Model& model, const StepInputs& inputs, const State& before, const Positions& x,
               OpenWorkspace& workspace);
 

@@ -1,6 +1,6 @@
-// Implements ADMM (Overby, Brown, Li, Narain 2017, "ADMM ⊇ projective dynamics"): each element has a deformation of its
-// own, which a local step finds (element_proximal.h), and multipliers that tie it to the positions, which the global
-// step finds with the factor of A. The weights of the ties are those of L.
+// Implements ADMM (Overby, Brown, Li, Narain 2017, "ADMM ⊇ projective dynamics"): each element has a deformation of
+// its own, which a local step finds (element_proximal.h), and multipliers that tie it to the positions, which the
+// global step finds with the factor of A. The weights of the ties are those of L.
 #pragma once
 
 #include "base/aligned.h"
@@ -10,7 +10,7 @@
 namespace supple {
 
 // An iteration makes the local step at the current iterate and then the global one. Its direction leads to the
-// positions that the latter finds, and is followed to its end.
+// positions that the global step finds, and is followed to its end.
 class SplittingRule final : public SearchRule {
  public:
   void begin(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override;
@@ -21,7 +21,7 @@ class SplittingRule final : public SearchRule {
   void make_local_steps(const Model& model, OpenWorkspace& workspace);
 
   AlignedVector<double> multipliers_;  // u, by block, most_multipliers x block_width
-  bool start_ = true;                  // they have no values yet
+  bool start_ = true;                  // whether the multipliers have no values yet
 };
 
 }  // namespace supple

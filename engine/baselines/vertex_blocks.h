@@ -32,11 +32,11 @@ class VertexBlockRule final : public SearchRule {
   bool accelerated_;
   std::vector<VertexColor> colors_;
   std::vector<double> numbers_;  // by lane of a colour, corner_numbers each
-  std::vector<double> partial_;  // of chunked sums
-  Positions x_;                  // where the sweep is, n x 3 [m]
-  Positions middle_;             // where forces are evaluated, n x 3 [m]; empty unless that is not x
+  std::vector<double> partial_;  // slope of each task
+  Positions x_;                  // positions in the course of the sweep, n x 3 [m]
+  Positions middle_;             // positions where forces are evaluated, n x 3 [m]; empty where these are x_
   std::vector<std::vector<std::int32_t>> contacts_of_;  // by free vertex; empty without contacts
-  std::vector<std::int32_t> touched_;                   // the vertices that have some
+  std::vector<std::int32_t> touched_;                   // the vertices that have contacts
   int iteration_ = 0;
   double omega_ = 1;
   Positions before_;  // the iterate before the current one, n x 3 [m]

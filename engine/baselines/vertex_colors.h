@@ -8,12 +8,12 @@
 
 namespace supple {
 
-// Holds elements of one kind and region, in the layout of ElementChunk. An element is there once for each of its
-// corners that has the colour, which is then its corner 1.
+// Holds elements of one kind and region that have a corner of the colour, in the layout of ElementChunk. This corner is
+// renumbered as the element's corner 1.
 struct CornerChunk {
   ElementKind kind;
   int region;
-  int first_lane, blocks;  // among all lanes of the colour
+  int first_lane, blocks;  // first_lane: among all lanes of the colour
   std::vector<std::int32_t> vertex = {};
   std::vector<std::uint16_t> corner = {};
   AlignedVector<double> field = {};

@@ -20,7 +20,7 @@ inline VertexTerms vertex_terms(const Model& model, const OpenWorkspace& w, cons
   if (!model.handle_stiffness.empty() && model.handle_stiffness[v] > 0) {
     Vec3 place = x.row(v);
     if (theta < 1) place = theta * place + (1 - theta) * w.start_copy.row(v).transpose();
-    // e theta = 1 for both integrators.
+    // The scheme's energy times theta is 1 for both integrators.
     terms.slope += model.handle_stiffness[v] * (place - w.target.row(v).transpose());
     terms.stiffness += theta * model.handle_stiffness[v];
   }

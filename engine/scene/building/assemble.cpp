@@ -40,7 +40,9 @@ void apply(const Eigen::Affine3d& place, Positions& points) {
   for (Eigen::Index v = 0; v < points.rows(); ++v) points.row(v) = (place * Vec3(points.row(v))).transpose();
 }
 
-// Pieces stay where they are in the whole, which is placed and scaled as one. A body whose skin touches stands on it.
+// Returns the points by whose box a body is placed and scaled. For one of several pieces these are the points of the
+// whole, in which the pieces keep their places; for a body whose skin touches, those of the skin, on which it then
+// stands.
 const Positions& points_to_place(const Body& body) {
   const auto& read = body.def.read_surface;
   if (read && read->pieces.size() > 1) return read->whole;
@@ -110,7 +112,8 @@ void note_drag(const SceneDef& scene, Body& body) {
   body.notes.push_back(fmt::format("body '{}' has a drag, but the scene has no [wind] and so no air", body.def.name));
 }
 
-// Tells which vertices earlier handles have at some time at which another one, `next`, holds. They keep them.
+// Tells which vertices belong to earlier handles at some time at which `next` holds, too: the earlier handles keep
+// these vertices.
 std::vector<char> taken_before(const Body& body, const HandleDef& next) {
   std::vector<char> taken(body.description.mesh.rest.rows(), 0);
   for (std::size_t h = 0; h < body.description.handles.size(); ++h) {
@@ -331,7 +334,7 @@ void add_spin(const Model& model, const Vec3& spin, State& state) {
 
 namespace {
 
-// Puts what an earlier run's handle held under the handle of the same name.
+// Gives the handle of the same name what a handle of an earlier run held.
 void take_over(const EarlierState::Held& held, const Model& model, const Body& body, Anchors& anchors) {
   const auto found = std::ranges::find(body.def.handles, held.handle, &HandleDef::name);
   if (found == body.def.handles.end()) return;
@@ -358,7 +361,7 @@ State later_state(const Model& model, const Body& body, const EarlierState& from
     state.flow = from.flow;
   state.anchors = rest_anchors(model, body);
   for (std::size_t h = 0; h < body.def.handles.size(); ++h)
-    if (body.def.handles[h].grabs) state.anchors.holds[h] = 0;  // it takes hold in the first step, of where the body is
+    if (body.def.handles[h].grabs) state.anchors.holds[h] = 0;  // it grabs in the first step, where the body is then
   for (const EarlierState::Held& held : from.handles) take_over(held, model, body, state.anchors);
   if (from.memory) state.memory = *from.memory;
   state.bounces = from.bounces;

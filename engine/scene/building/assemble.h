@@ -1,5 +1,5 @@
-// Makes ready-to-run objects from definitions: meshes are read or made, placed and scaled, and handles are chosen. What
-// is drawn of them is made in drawn_body.h.
+// Makes bodies that are ready to run from their definitions: meshes are read or made, placed and scaled, and the
+// vertices of handles are found. What is drawn of bodies is made in drawn_body.h.
 #pragma once
 
 #include <string>
@@ -24,22 +24,25 @@ std::vector<Body> assemble(const SceneDef& scene, const SlowWork& work);
 // Throws InputError.
 void update_body(Body& body, const SceneDef& scene, const BodyDef& def);
 
-// Adds a handle to a body, whose definition has it next behind those that the body has already. Where two handles would
-// hold a vertex at the same time, the first one has it. Adds to the problems where no vertex is left, or none free.
+// Adds a handle to a body. def: its definition, which must be the one in body.def.handles that follows those of the
+// handles that the body has. Where two handles would hold a vertex at the same time, the first one has it. Adds a
+// problem where the handle has no vertex, names one that the mesh does not have, or leaves the body no free one.
 void add_handle(Body& body, const HandleDef& def, std::vector<Problem>& problems);
 
 // Returns the positions in which a body starts, by vertex of its mesh [m].
 Positions first_positions(const Body& body);
-// Returns those in which it is when the clock is at 0, which is earlier where the film goes on from another run.
+// Returns the positions of a body when the clock is at 0, by vertex of its mesh [m]. In a film that goes on from
+// another run, that is before the film begins.
 Positions scene_start(const Body& body);
-// Returns the state in which a body starts: handled vertices are at rest, and handles move them from there.
+// Returns the state in which a body starts: that of an earlier run, or else its first positions, with its velocity and
+// spin, but without velocity at vertices of handles that do not grab.
 State start_state(const Model& model, const Body& body);
 
 // Makes a handle grab its vertices at their present positions, from which its keys then move them.
 void grab(const Model& model, int handle, const Positions& x, Anchors& anchors);
 
-// Computes the targets of all handled vertices, in the order of model.handled. change: how much is done of a change
-// that is spread over the frame, 0 to 1.
+// Computes the targets of all handled vertices, in the order of model.handled. change: the share that is done of a
+// change which is spread over the frame, 0 to 1.
 void handle_targets(const Model& model, const Body& body, const Anchors& anchors, double time, double change,
                     Positions& targets);
 // Does the same for a body whose handles grab nothing and whose definition does not change.

@@ -13,19 +13,19 @@ namespace supple {
 struct BodyDepth {
   std::size_t a, b;  // the bodies, the earlier one first; equal where a body is in itself
   double depth;      // an estimate (geometry/triangles/shared_depth.h); 0: no vertex of one is inside the other [m]
-  double share;      // of the depth in the size of the smaller body
-  Vec3 place;        // of the vertex that is deepest [m]
+  double share;      // depth over the size of the smaller body
+  Vec3 place;        // place of the deepest vertex [m]
 };
 
 // Returns the pairs of bodies that meet and overlap in these positions. An overlap below a ten-thousandth of the
 // smaller body's size does not count. points: the positions of each body's mesh, n x 3 [m].
 std::vector<BodyDepth> overlaps_of_bodies(const std::vector<Body>& bodies, const std::vector<Positions>& points);
 
-// Returns the bodies that meet themselves and are partly inside themselves in these positions, with the deepest point
+// Returns the solids that meet themselves and are partly inside themselves in these positions, with the deepest point
 // of each. points: as above.
 std::vector<BodyDepth> bodies_in_themselves(const std::vector<Body>& bodies, const std::vector<Positions>& points);
 
-// Tells of two bodies that overlap at the start, or of one that does with itself, and of what becomes of that.
+// Says that two bodies overlap at the start, or that one overlaps itself, and what becomes of the overlap.
 std::string start_overlap_text(const std::vector<Body>& bodies, const BodyDepth& overlap);
 
 // Finds, each once, the pairs of bodies that meet and are deep in each other.
@@ -38,7 +38,7 @@ class DeepBodies {
 
   // Leaves a pair out of find() from now on.
   void leave_out(std::size_t a, std::size_t b) { pairs_.leave_out(a, b); }
-  // Finds a pair again that was left out.
+  // Lets find() look again for a pair that was left out.
   void take_in(std::size_t a, std::size_t b) { pairs_.take_in(a, b); }
   // Tells whether find() has nothing to look for, as the bodies are defined now.
   bool none_left() const { return !pairs_.has(PairKind::meeting); }

@@ -11,7 +11,7 @@ namespace supple {
 
 enum class PairKind {
   meeting,  // the bodies meet (scene/definition/meeting.h), and one of them has an inside
-  passing,  // they do not meet, or are two cloths: what shares space passes through each other
+  passing,  // they do not meet, or are two cloths: where they share space, they pass through each other
 };
 
 // A pair is written with the earlier body first. Its kind is that of the bodies' present definitions, which a replay
@@ -23,18 +23,18 @@ class BodyPairs {
 
   // Leaves a pair out from now on.
   void leave_out(std::size_t a, std::size_t b) { look_for(a, b, false); }
-  // Looks for a pair again that was left out.
+  // Looks again for a pair that was left out.
   void take_in(std::size_t a, std::size_t b) { look_for(a, b, true); }
 
   // Tells whether a pair of this kind is looked for.
   bool has(PairKind kind) const;
 
-  // Returns the pairs of a kind that are looked for and whose boxes overlap in these positions. points: the positions
-  // of each body's mesh, n x 3 [m].
   struct Near {
     std::size_t a, b;
-    PosedMesh mesh_a, mesh_b;  // they refer to `points` and to this object
+    PosedMesh mesh_a, mesh_b;  // they refer to the points given to near(), and to this object
   };
+  // Returns the pairs of a kind that are looked for and whose boxes overlap in these positions. points: the positions
+  // of each body's mesh, n x 3 [m].
   std::vector<Near> near(PairKind kind, const std::vector<Positions>& points);
 
  private:
@@ -44,7 +44,7 @@ class BodyPairs {
 
   const std::vector<Body>& bodies_;
   std::vector<Triangles> surfaces_;  // surface of each body, once it is needed
-  std::vector<char> looked_for_;     // by pair
+  std::vector<char> looked_for_;     // by pair: whether it is looked for
 };
 
 }  // namespace supple

@@ -27,7 +27,7 @@ double metres_of_unit(const TriMesh& surface, const BodyDef& def) {
   return def.size ? *def.size / bounds_of(surface.points).extent().maxCoeff() : def.scale;
 }
 
-// Makes triangles whose edges have the wanted length. edge: as it is in the world, where the body has its size [m];
+// Makes triangles whose edges have the wanted length. edge: this length in the world, where the body has its size [m];
 // lines: edges of the surface that stay as lines.
 RemeshedSurface with_edges_of(const TriMesh& surface, const std::vector<std::array<std::int32_t, 2>>& lines,
                               double edge, const BodyDef& def, Body& body) {
@@ -92,8 +92,8 @@ struct FileCloth {
 };
 
 // Returns the edges that stay as lines when the triangles become new ones: seams of the texture, and borders between
-// parts. Where so many would stay that new triangles could not have the wanted size, as in a texture that has a place
-// of its own for each triangle, there are none.
+// parts. Returns none, or throws for a cloth that is cut by its texture, where so many would stay that new triangles
+// could not have the wanted size, as in a texture that has a place of its own for each triangle.
 std::vector<std::array<std::int32_t, 2>> lines_that_stay(const BodyDef& def, const FileCloth& cloth,
                                                          const ColoredSurface& file, Body& body) {
   if (cloth.corners.empty()) return {};
@@ -112,7 +112,7 @@ std::vector<std::array<std::int32_t, 2>> lines_that_stay(const BodyDef& def, con
   return {};
 }
 
-// Keeps what the file says of the triangles.
+// Puts into the body what the file says of the cloth's triangles: colours, names, texture coordinates and cut.
 void keep_what_is_said(const BodyDef& def, const FileCloth& cloth, const ColoredSurface& file, Body& body) {
   if (!cloth.corners.empty()) {
     body.file_colors = colors_on(cloth.corners, file);

@@ -11,7 +11,8 @@ namespace supple {
 // Returns the body of a cloth in the frame of its file or grid. Throws InputError.
 Body body_of_cloth(const BodyDef& def);
 
-// Chooses between the colours of a body's file (Body::file_colors) and its own, and names what is drawn as a source.
+// Sets Body::colors to the colours of the body's file (Body::file_colors) where the definition wants them, and lists
+// them in Body::files. Notes it where the file lacks colours that are asked for.
 void choose_colors(const BodyDef& def, const std::filesystem::path& file, Body& body);
 
 }  // namespace supple

@@ -21,7 +21,8 @@ std::vector<std::array<Eigen::Vector2d, 3>> flat_cut(const TriMesh& surface, con
 // Returns how many metres a unit of the texture would be if the cut had the area of the placed surface.
 double scale_of_equal_area(const Body& body);
 
-// Returns how many metres a unit of the texture is: as the scene says or, where it does not, those of equal area.
+// Returns how many metres a unit of the texture is: as many as the scene says or, where it says nothing, as
+// scale_of_equal_area() gives.
 double cut_scale(const Body& body);
 
 // Tells how far a cloth is stretched against its cut where it is placed: ratios of lengths, two for each triangle,

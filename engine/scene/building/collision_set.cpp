@@ -13,8 +13,8 @@
 namespace supple {
 namespace {
 
-// Returns the primitive of this kind of which the collider consists; null when it is another kind, or more than one
-// primitive.
+// Returns the primitive of this kind of which the collider consists; null when the collider consists of another kind,
+// or of more than one primitive.
 template <class Kind>
 const Kind* lone(const SceneCollider& collider) {
   const std::vector<ShapePart>& parts = collider.def.shape.root.parts;

@@ -18,16 +18,16 @@ struct SceneDef;
 struct Skin;  // geometry/skins/skin.h
 
 struct SceneCollider {
-  ColliderDef def;  // of one that deforms, its shape is that of the film's start
+  ColliderDef def;  // the shape of a collider that deforms is that at the film's start
   KeyedMotion motion;
-  Eigen::Isometry3d rest = no_motion();  // from its frame to the world before any key
+  Eigen::Isometry3d rest = no_motion();  // map from its frame to the world before any key
 
   double scene_fps = 0;
 
   // Returns the map from the collider's frame to the world at a time [s].
   Eigen::Isometry3d pose(double time) const;
-  // Returns the frame of the motion that deforms the collider at a time [s], within that motion. Only where there is
-  // one.
+  // Returns the number of the frame of SurfaceMotionDef::motion at a time [s], which need not be whole. To be called
+  // only where the collider deforms.
   double frame(double time) const;
   // Returns the shape at a time [s].
   Shape shape_at(double time) const;
@@ -40,31 +40,32 @@ struct DeformedStep {
   std::shared_ptr<const SurfaceMove> move;
 };
 
-// Holds all that bodies can collide with: the colliders of the scene, and no other bodies.
+// Holds the colliders of a scene. What bodies do with each other is not here.
 struct CollisionSet {
   std::vector<SceneCollider> scene_colliders;
-  std::vector<SceneCollider> earlier;  // those before a change that is spread over this frame; else empty
+  std::vector<SceneCollider> earlier;  // the colliders before a change that is spread over this frame; else empty
   std::vector<Collider> colliders;     // the scene's colliders in the form that the solver needs
   std::vector<DeformedStep> deformed;  // by collider; empty where none deforms
 };
 CollisionSet collision_set(const SceneDef& scene);
 
-// Describes a part of the frame in progress: two times [s], and how much is done at each of them of a change that is
-// spread over the frame, 0 to 1.
+// Describes a part of the frame in progress: two times [s], and for each of them the share that is done of a change
+// which is spread over the frame, 0 to 1.
 struct StepSpan {
   double from, to;
   double change_from = 1, change_to = 1;
 };
 
-// Gives the colliders that deform the shapes that they have at the end of a step from one time to another [s]. What
-// they are follows from the two times alone.
+// Sets the shapes of colliders that deform to those at the end of a step from one time to another [s]. They follow from
+// these two times alone.
 void deform_colliders(CollisionSet& set, double from, double to);
 
 // Computes the motions of all colliders over one step, for which deform_colliders() was called.
 void collider_motions(const CollisionSet& set, const StepSpan& span, std::vector<ColliderMotion>& motions);
 
 // Makes the skin of a collider, in its own frame. A half space becomes a square that reaches well beyond `around` (in
-// the world). The skin is empty for the ground that every film has.
+// the world). The skin is empty for a collider that is not visible, and for the ground, which every film shows by
+// itself.
 Skin drawn_collider(const SceneCollider& collider, const Bounds& around);
 
 // Returns the places of that skin's vertices at a time [s], in the collider's frame.

@@ -28,8 +28,9 @@ double square_of(const Body& body) {
   return body.def.cloth ? extent[2] / 20 : extent[1] / 6;
 }
 
-// Describes a skin in the file's frame and the elements that carry it, which bodies share that differ only in place,
-// size and substance. The edge of the skin's cells, or of the printed squares, is in the file's units.
+// Describes a skin in the file's frame, with the elements that carry it. Bodies that differ only in place, size and
+// substance share one. number: the edge of the skin's cells for a shape, or of the printed squares for a surface [the
+// file's units].
 struct SkinRequest {
   const Body& body;
   double number;
@@ -42,7 +43,8 @@ struct SkinRequest {
     return carried;
   }
 
-  // Cuts triangles until they are small enough to bend where the elements do; small ones stay as they are.
+  // Returns the skin of a surface. Its triangles are cut until they are small enough to bend where the elements do;
+  // small ones stay as they are.
   Skin of_surface(const TetMesh& mesh) const {
     constexpr double edges = 1.5;             // longest edge of a triangle, over the elements' mean edge
     constexpr Eigen::Index most = 2'000'000;  // triangles

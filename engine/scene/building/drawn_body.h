@@ -19,7 +19,7 @@ struct DrawnBody {
   std::optional<SkinLimit> limit;       // limit of the skin's stretch, once limit_stretch() has been called
   std::vector<std::int32_t> vertex_of;  // for the mesh's boundary: mesh vertex by skin vertex, before it is subdivided
   bool subdivides = false;              // whether cameras subdivide the mesh's boundary, as for cloth
-  SurfaceWeights weights;               // of the mesh's vertices on those of a boundary that is subdivided
+  SurfaceWeights weights;               // weights of the mesh's vertices in those of a boundary that is subdivided
   bool two_sided = false;
   Vec3 color;
   std::vector<PaintLayer> layers;  // colours only; their areas live in the skin

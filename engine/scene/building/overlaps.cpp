@@ -44,7 +44,8 @@ bool may_meet(const Bounds& box, const Eigen::Isometry3d& pose, const Bounds& ot
   return (pose * box.center() - other.center()).norm() <= 0.5 * (box.diagonal() + other.diagonal());
 }
 
-// Finds the places of a body's surface that lie in colliders between its vertices, where contact would find them.
+// Finds the places between the vertices of a body's surface that lie in colliders, so deep that contact of points
+// between vertices would find them.
 std::vector<Vec3> places_between(const CollisionSet& set, const Obstacles& obstacles, const Body& body,
                                  const Positions& vertices) {
   const Triangles surface = surface_of(body);

@@ -1,6 +1,6 @@
 // Finds the bodies that start inside colliders, and decides what is done about each. Their warning is `inside`; the
-// warning `overlap` is of two bodies in the same place (body_passings.h, body_depths.h). Not here: how a body that
-// stays inside is pushed out while the film runs (sim/contact/way_out.h).
+// warning `overlap` is about bodies in the same place as others, or in themselves (body_passings.h, body_depths.h). Not
+// here: how a body that stays inside is pushed out while the film runs (sim/contact/way_out.h).
 #pragma once
 
 #include "scene/building/body.h"

@@ -12,7 +12,7 @@ namespace supple {
 namespace {
 
 constexpr std::array side_keys = {"side", "onto"};
-constexpr double same_share = 1e-9;  // of a side's length, within which two places are one
+constexpr double same_share = 1e-9;  // share of a side's length within which two places are one
 
 // Says what is wrong with a side of a seam.
 struct SeamFault {
@@ -93,7 +93,7 @@ struct Side {
   double length = 0;  // at rest [m]
 };
 
-// Follows the border past the points of a side.
+// Returns a side of a seam, which follows the border from each of its points to the next.
 Side side_of(const Body& body, const Border& border, const SeamDef& def, std::size_t number) {
   const std::vector<Vec3>& points = def.sides[number];
   Side side;

@@ -10,11 +10,12 @@
 
 namespace supple {
 
-// Adds the seams of its definition to a body that is in its place, and a note on them. Reports what is wrong with the
+// Adds to a body that is in its place the seams of its definition, and a note on them. Reports what is wrong with the
 // points of a seam.
 void add_seams(Body& body, std::vector<Problem>& problems);
 
-// Says that the sides of a seam differ in length by more than a tenth; empty where they do not. number: of the seam.
+// Says that the sides of a seam differ in length by more than a tenth; empty where they do not. number: the index of
+// the seam in Body::seams.
 std::string uneven_seam_text(const Body& body, std::size_t number);
 
 }  // namespace supple

@@ -78,7 +78,7 @@ std::vector<char> on_border(const Triangles& triangles, Eigen::Index vertices) {
   return border;
 }
 
-// Names a place on the surface of which the file tells, and the vertex that it stands for.
+// Names a place on the file's surface, and the vertex of the mesh that has the properties of this place.
 struct ToldPlace {
   std::int32_t vertex;
   Eigen::Index triangle;

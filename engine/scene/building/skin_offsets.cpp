@@ -57,7 +57,7 @@ Positions vertex_normals(const Triangles& triangles, const Positions& points) {
 
 // Returns places all over the drawn surface, nearer to each other than the elements' vertices are.
 Positions places_on_skin(const Body& body) {
-  constexpr double between = 0.5;           // two places, over the elements' mean edge
+  constexpr double between = 0.5;           // longest edge between two places, over the elements' mean edge
   constexpr Eigen::Index most = 1'000'000;  // triangles
   const TetMesh unplaced{body.unplaced, body.description.mesh.tets, {}};
   Positions places = refined(body.skin, between * mean_edge(unplaced), most).mesh.points;
@@ -65,7 +65,8 @@ Positions places_on_skin(const Body& body) {
   return places;
 }
 
-// Returns how far out a place lies, seen from a vertex: what is far to the side of it does not count as its own.
+// Returns how far out a place lies, seen from a vertex, less half of how far it lies to the side. way: from the vertex
+// to the place.
 double outwardness(const Vec3& way, const Vec3& normal) {
   constexpr double of_the_side = 0.5;
   const double out = way.dot(normal);

@@ -6,9 +6,11 @@
 
 namespace supple {
 
-// Returns by vertex of a body's mesh the way to such a place at rest, n x 3 [m]. Among the places of the skin to which
-// the vertex is the nearest one, it is the one that lies furthest out; a vertex that is nearest to none has the place
-// that is nearest to it. Zero inside the body. Empty where the elements themselves are drawn. The body must be placed.
+// Returns by vertex of a body's mesh the way to the place that touches in its stead, at rest, n x 3 [m]. For a body
+// made from a surface, this is the place that lies furthest out among those to which the vertex is the nearest one; a
+// vertex that is nearest to none has the place that is nearest to it. For a body made from a shape, it is the place of
+// the shape that is nearest to the vertex. Zero inside the body. Empty where the elements themselves are drawn. The
+// body must be placed.
 Positions skin_offsets(const Body& body);
 
 }  // namespace supple

@@ -11,8 +11,8 @@ namespace supple {
 namespace {
 
 constexpr double furthest_skin = 0.01;  // over the body's size
-constexpr double most = 0.004;  // the same; deeper than contact usually is, impacts would hide more of the bodies
-constexpr int smoothings = 3;   // a step cannot foresee how the overhang changes along the surface
+constexpr double most = 0.004;          // the largest that counts, over the size; larger ones let impacts gain energy
+constexpr int smoothings = 3;           // a step cannot foresee how the overhang changes along the surface
 
 // Finds how far the skin is from places of the elements' surface, in the file's frame and units.
 class SkinAbove {

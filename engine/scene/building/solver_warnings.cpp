@@ -15,7 +15,7 @@ namespace supple {
 double loss_of_spin(const Body& body) {
   const double k = system_stiffness(body.def.substance.material, body.def.solver.fit).k;
   const double size = bounds_of(body.description.mesh.rest).diagonal();
-  const double gyration = size * size / 18;  // I / m of a box about each of its axes, on the mean [m^2]
+  const double gyration = size * size / 18;  // I / m of a box, as the mean about its three axes [m^2]
   return 2 * body.def.solver.damping * k / (body.description.density * gyration);
 }
 

@@ -1,5 +1,5 @@
 // Warns of settings of solvers that do less, or more, than they seem to: damping that keeps a body from turning, and a
-// matrix that serves no body of the scene. Not here: warnings.h, which calls these.
+// matrix that serves no body of the scene. The functions of warnings.h call these.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@ namespace supple {
 struct SceneDef;
 
 // Computes how fast stiffness-proportional damping takes the spin from a body that nothing holds [1/s]. A turn by a
-// small angle a moves an element of volume V as if it were strained by sqrt(2) a, so that the damping of docs/method.md
-// takes beta k V a^2 / h from a step, beside the inertia's I a^2 / (2 h^2): the rate is 2 beta k V / I, whatever h is.
-// I is that of the rest shape's box, as the mean of its three axes.
+// small angle a moves each element as if it were strained by sqrt(2) a. So a body of volume V has beta k V a^2 / h in
+// the damping's part of g (docs/method.md), beside I a^2 / (2 h^2) in the part of inertia: the rate is 2 beta k V / I,
+// whatever h is. I is the mean of the moments of inertia of the rest shape's box about its three axes.
 double loss_of_spin(const Body& body);
 
 // Returns a warning of damping that takes half of a free body's spin before the film is over; empty without one. Cloth

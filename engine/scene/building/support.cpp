@@ -14,7 +14,7 @@ namespace {
 
 // Sizes over the diagonal of the body's box. They are as small as can be seen in a picture of 640 pixels.
 constexpr double pin_radius = 0.012, rod_radius = 0.01;
-constexpr double largest_pin = 0.03;  // on a small part of a figure, such as the tip of an ear
+constexpr double largest_pin = 0.03;  // largest pin on a small part of a figure, such as the tip of an ear
 constexpr double small_part = 0.15;   // the largest such part
 constexpr double thinnest_plate = 0.012, thickest_plate = 0.03;
 constexpr double over_skin = 0.6;        // least radius of a pin over an element whose skin is finer
@@ -194,8 +194,7 @@ TriMesh plate_on(const Frame& frame, const HeldPart& part, const Bounds& box, co
   for (const std::int32_t v : part) {
     if (std::abs(frame.places(v, end.axis) - side) <= frame.edge) outer.push_back(v);
   }
-  // The tip of something pointed would have a plate too small to be seen, and inside a skin that is finer than the
-  // mesh.
+  // On a pointed tip, a plate would be too small to be seen, and would lie inside a skin that is finer than the mesh.
   Vec3 across = box_of(frame, outer).extent();
   across[end.axis] = 0;
   if (across.norm() < 4 * frame.pin) outer = part;
@@ -248,7 +247,7 @@ double held_area(const Frame& frame) {
   return area;
 }
 
-// Makes a clamp around a flat piece of cloth; nothing where it is not flat, or a clamp would hide much more than it
+// Makes a clamp around a part of a cloth; nothing where the part is not flat, or the clamp would hide much more than it
 // holds.
 std::optional<TriMesh> clamp_on(const Frame& frame, const HeldPart& part, const Bounds& box) {
   int axis = 0;
@@ -267,7 +266,7 @@ std::vector<TriMesh> pins_in(const Frame& frame, const HeldPart& part) {
     if (frame.on_surface[std::size_t(v)] != 0) seen.push_back(v);
   }
   std::vector<TriMesh> pins;
-  std::vector<double> away(seen.size(), 1e300);  // from the nearest pin, squared
+  std::vector<double> away(seen.size(), 1e300);  // squared distance from the nearest pin
   while (!seen.empty() && pins.size() < most_pins) {
     const auto next = std::ranges::max_element(away) - away.begin();
     const double radius = frame.pin;
@@ -324,8 +323,8 @@ std::vector<Support> supports_of(const Body& body) {
   return supports;
 }
 
-// By Kabsch 1976, "A solution for the best rotation to relate two sets of vectors". A point and a line leave rotations
-// open; balls and rods look the same in all of them.
+// Follows Kabsch 1976, "A solution for the best rotation to relate two sets of vectors". A point and a line leave
+// rotations open; balls and rods look the same in all of them.
 Eigen::Isometry3d motion_of_held(const Body& body, std::size_t handle, const Positions& now) {
   const std::vector<std::int32_t>& vertices = body.description.handles[handle].vertices;
   const Positions& rest = body.description.mesh.rest;

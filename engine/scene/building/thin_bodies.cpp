@@ -11,8 +11,9 @@ namespace {
 
 constexpr double slender = 5;  // length over thickness from which on a body mostly bends
 
-// Linear tetrahedra shear where they should bend: the tip of a clamped bar with 1, 2 and 4 cells across sank by 2.95,
-// 6.1 and 8.6 mm where beam theory has 10, so it is 1 + 2.5 / cells^2 times as stiff as it should be.
+// Tells of a slender box with one or two cells across. Linear tetrahedra shear where they should bend: the tip of a
+// clamped bar with 1, 2 and 4 cells across sank by 2.95, 6.1 and 8.6 mm where beam theory has 10, so such a bar is 1 +
+// 2.5 / cells^2 times as stiff as it should be.
 std::string text_of_box(const Body& body) {
   const Vec3& extent = body.def.box->extent;
   Eigen::Index thinnest = 0;

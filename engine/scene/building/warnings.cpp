@@ -115,7 +115,7 @@ void warn_of_substance(const Body& body, std::vector<Warning>& list) {
   }
 }
 
-// Warns of a body that its directions take for far stiffer than it is near rest. Ten iterations hardly move what is
+// Warns of a body that search directions take for far stiffer than it is near rest. Ten iterations hardly move what is
 // free there, and the estimates of errors do not see all of it: stiff cubes of such materials that land end steps with
 // all of their motion missing (docs/stability.md).
 void warn_of_looseness(const Body& body, std::vector<Warning>& list) {
@@ -198,7 +198,8 @@ void warn_of_fast_surfaces(const SceneDef& scene, const std::vector<Body>& bodie
 }
 
 // Warns of handles that follow a body whose velocities keep fast vibrations, because implicit midpoint damps none: the
-// handle shakes by a step's length of these. A cube of rubber on springs of 50 N/m exploded within 24 frames.
+// handle's targets go on with these velocities for a step, and shake. A cube of rubber on springs of 50 N/m exploded
+// within 24 frames.
 void warn_of_followed(const std::vector<Body>& bodies, std::vector<Warning>& list) {
   const auto followed = [&bodies](const HandleDef& handle) {
     return std::ranges::any_of(bodies, [&handle](const Body& body) {
@@ -331,7 +332,7 @@ void warn_of_slivers(const Body& body, const MeshQuality& quality, std::vector<W
                                 body.def.name, quality.smallest_volume, quality.smallest_dihedral)));
 }
 
-// weight: of the body [N]; size: its diagonal [m].
+// Warns of handles that jump, or are soft for their load. weight: weight of the body [N]; size: its diagonal [m].
 void warn_of_handles(const Body& body, double weight, double size, std::vector<Warning>& list) {
   for (std::size_t i = 0; i < body.description.handles.size(); ++i) {
     const Handle& handle = body.description.handles[i];

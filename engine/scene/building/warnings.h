@@ -1,4 +1,5 @@
-// Warns about scenes that are legal but unwise.
+// Warns about scenes that are legal but unwise, before a film is made of them. Not here: what a run warns of at its end
+// (output/run/row_tally.h), and letters that the font lacks (film/pictures/picture_words.h).
 #pragma once
 
 #include <optional>
@@ -11,8 +12,9 @@ namespace supple {
 
 struct SceneDef;
 
-// Computes k h^2 / (rho L^2), with the stiffness of the body or its fibres: the square of the number of times that a
-// wave crosses the body in one step. When it is far above 1, ten iterations leave a visible error.
+// Computes k h^2 / (rho L^2): the square of the number of times that a wave crosses the body in one step. k is the
+// stiffness of the body and its fibres; for cloth, k is tension by width, and rho is mass by area. When the number is
+// far above 1, ten iterations leave a visible error.
 double crossing_number(const Body& body);
 
 // Says what a crossing number means to the solver: "soft for its time step", "firm ..." or "stiff ...".

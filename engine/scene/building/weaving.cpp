@@ -22,8 +22,8 @@ void weave_springs(Body& body) {
   join(body.cloth.bends, def.bend);
 }
 
-// Lays each triangle flat as it stands in the world. The warp is the grain as the triangle's plane has it; where the
-// plane is across the grain, it is the direction of its first edge.
+// Lays each triangle flat as it stands in the world. The warp is the projection of the grain onto the triangle's plane
+// or, where the plane is across the grain, the direction of the first edge.
 void weave_triangles(Body& body) {
   const ClothDef& def = *body.def.cloth;
   BodyDescription& description = body.description;

@@ -83,7 +83,7 @@ toml::table& enter(toml::table& document, Places& places, const std::vector<std:
   return *table;
 }
 
-// Returns the value in its new place.
+// Puts a copy of a value at a path, after removing the keys that exclude its key, and returns the copy.
 toml::node& put_node(toml::table& document, Places& places, const std::vector<std::string>& path,
                      const FilePlace& place, const std::vector<std::set<std::string>>& exclusive,
                      const toml::node& value) {
@@ -96,8 +96,8 @@ toml::node& put_node(toml::table& document, Places& places, const std::vector<st
   return *table.get(path.back());
 }
 
-// Bodies and colliders without a name are called like their list. The second one and those after it get a number, so
-// that paths can tell them apart.
+// Names bodies and colliders that have no name, so that paths can tell them apart. The first of them in a list is
+// called like the list, and needs nothing; those after it get a name with a number.
 void number_unnamed(toml::table& document) {
   for (const char* list : {"body", "collider"}) {
     toml::array* elements = document.get_as<toml::array>(list);
@@ -205,7 +205,7 @@ template <class FolderOf>
 void make_absolute(toml::node& node, std::string_view key, const FolderOf& folder_of) {
   static constexpr std::array file_keys = {"surface", "shape", "mesh", "ghost", "reference", "run"};
   if (toml::table* table = node.as_table()) {
-    const std::string path = (*table)["path"].value_or(std::string());  // of a change, which says what its value is
+    const std::string path = (*table)["path"].value_or(std::string());  // path of a change: tells what its value is
     for (auto&& [name, inner] : *table)
       make_absolute(inner, name == "value" && !path.empty() ? path : name.str(), folder_of);
   } else if (toml::array* list = node.as_array()) {

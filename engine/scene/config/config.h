@@ -75,12 +75,12 @@ struct PathList {
 std::string toml_text(std::string_view text);
 
 class ConfigTable;
-struct KnownSurfaces;  // surfaces that a Config and its copies have read already (shape_reader.cpp)
+struct KnownSurfaces;  // surfaces that a Config and its copies have read already (reading/known_surfaces.h)
 
 class Config {
  public:
-  // Throws InputError when there is no such file, when it is larger than 1 MB or when it is not TOML. Relative paths in
-  // it are looked up first in the folder of the file, then in `assets`.
+  // Reads a file. Throws InputError when there is no such file, when it is larger than 1 MB or when it is not TOML.
+  // Relative paths in it are looked up first in the folder of the file, then in `assets`.
   static Config load(const std::filesystem::path& path, const std::filesystem::path& assets);
   static Config parse(std::string_view text, const std::string& name, const std::filesystem::path& assets);
   // Takes a text that stands for a file, in whose folder relative paths are looked up.
@@ -101,8 +101,8 @@ class Config {
   std::optional<ConfigValue> value_at(const std::string& path) const;
   // Appends a table of another file to a list of tables, which is created when it does not exist.
   void append(const std::string& list_path, const ConfigValue& table, const FilePlace& place);
-  // Sets a key, which may contain dots, of a table of the root, which is created when it does not exist. Relative names
-  // of files in the value become absolute ones.
+  // Sets a key of a table of the root. The table is created when it does not exist; the key may contain dots. Names of
+  // files in the value that are relative to the working folder become absolute.
   void put_key(const std::string& table, const std::string& key, const ConfigValue& value);
   // Makes the names of files in all values absolute.
   void make_files_absolute();
@@ -126,7 +126,7 @@ class Config {
   // Returns every key that a reader asked for, table by table.
   const std::vector<KnownKey>& known() const;
   std::string as_json() const;  // the whole document after set()
-  std::string as_toml() const;  // the same as a file could have it
+  std::string as_toml() const;  // the same document as TOML, for a file
   std::shared_ptr<KnownSurfaces>& surfaces();
   const std::filesystem::path& assets() const;
   const std::string& name() const;
@@ -190,9 +190,9 @@ class ConfigTable {
   // Returns a colour in sRGB, which a file gives as three numbers or as "#rrggbb".
   Vec3 color(const Key& key, const Vec3& fallback) const;
   std::optional<Vec3> color_if_given(const Key& key) const;
-  // Returns so many points, or with a count of 0 at least one.
+  // Returns `count` points, or at least one where `count` is 0; none when the key is absent or wrong.
   std::vector<Vec3> vectors(const Key& key, std::size_t count) const;
-  // Returns a list of at least one whole number from `lowest` on; it is empty when the key is absent or wrong.
+  // Returns a list of at least one whole number, each `lowest` or above; it is empty when the key is absent or wrong.
   std::vector<int> integers(const Key& key, int lowest) const;
   // Returns two numbers, both in range.
   Eigen::Vector2d pair(const Key& key, const Range& range) const;
@@ -211,7 +211,7 @@ class ConfigTable {
   // Returns an existing path, looked up in the folder of the file that names it or among the assets; empty when the key
   // is absent or wrong.
   std::filesystem::path file(const Key& key) const;
-  // The same, for paths that name more than one file. is_there: tells whether what a path names is there.
+  // Does the same for a path that may name more than one file. is_there: tells whether what a path names is there.
   std::filesystem::path file_that(const Key& key,
                                   const std::function<bool(const std::filesystem::path&)>& is_there) const;
 
@@ -225,7 +225,7 @@ class ConfigTable {
   std::vector<ConfigTable> tables(const Key& key) const;
   // Returns all lists in this table, whose keys are paths, in the order of the file.
   std::vector<PathList> path_lists() const;
-  // Returns a number, or nothing when the key is absent or has the value `word`.
+  // Returns a number; nothing when the key is absent or wrong, or has the value `word`.
   std::optional<double> number_or_word(const Key& key, const char* word, const Range& range) const;
 
   // Returns a text or a number, or nothing when the key is absent or wrong. `texts`: what the text is, such as "name of

@@ -74,7 +74,8 @@ std::string joined(const std::string& path, const char* name) { return path.empt
 
 }  // namespace
 
-// `name`: the name of a list's element, with its dot. `suffix`: the end of the generic path of a list.
+// Returns a table that the key has. `name`: the name of a list's element, with its dot. `suffix`: the end of the
+// generic path of a list.
 ConfigTable ConfigTable::inner(const Key& key, const toml::table& table, const std::string& name,
                                const char* suffix) const {
   return ConfigTable(config_, &table, joined(path_, key.name) + name, joined(generic_, key.name) + suffix);
@@ -123,7 +124,7 @@ void ConfigTable::wrong(const Key& key, const toml::node& node, const std::strin
 namespace {
 
 // The largest number that a file may give, far more than any unit needs. Formulas raise numbers to the fourth power and
-// multiply several of them; with larger numbers they would leave the range of a double in a place that no longer knows
+// multiply several of them; with larger numbers they would leave the range of a double in a place that does not know
 // the key.
 constexpr double most_of_any = 1e30;
 
@@ -249,7 +250,7 @@ std::vector<std::string> ConfigTable::choices(const Key& key, const Words& words
   return values;
 }
 
-// Returns an empty text when the key is absent or wrong.
+// Returns the word that a key has; an empty text when the key is absent or wrong.
 std::string ConfigTable::choice_if_given(const Key& key, const char* fallback, const Words& words) const {
   const toml::node* node = find(key, "word", fallback, words);
   return node != nullptr && is_one_of(words, key, *node) ? *node->value_exact<std::string>() : "";

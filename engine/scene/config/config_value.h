@@ -34,8 +34,8 @@ struct KnownKey {
   std::string generic;  // as in DocumentedKey
   std::string type, allowed, unit, meaning;
   std::string value;               // the value in the file, or the default
-  Range range = {};                // of numbers
-  std::vector<std::string> words;  // of which it is one, where it is a word
+  Range range = {};                // range of numbers
+  std::vector<std::string> words;  // the words that are allowed, where the value is one
 };
 
 // Selects how a value goes from one number to another.
@@ -61,7 +61,8 @@ class ConfigValue {
   // Reads a default in the form that KnownKey has. Returns nothing when the default is a description in words.
   // source: what messages name as the value's place.
   static std::optional<ConfigValue> parse(const std::string& text, const std::string& source = "");
-  // Returns the value at a fraction `s` of the way, 0 to 1, interpolated number by number. whole: numbers are rounded.
+  // Returns the value at a fraction `s` of the way, 0 to 1, interpolated number by number. whole: whether numbers are
+  // rounded.
   static ConfigValue between(const ConfigValue& from, const ConfigValue& to, double s, RampRule by, bool whole);
 
  private:

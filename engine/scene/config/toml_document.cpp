@@ -37,7 +37,8 @@ std::size_t end_of_string(std::string_view text, std::size_t at) {
   return text.size();
 }
 
-// Keys with dots make tables in tables, to any depth, and the parser does not count them.
+// Refuses keys with more than most_words words between dots: they make tables in tables, whose depth the parser does
+// not bound.
 void check_words_of_keys(std::string_view text, const std::string& name) {
   std::size_t words = 1;
   for (std::size_t i = 0; i < text.size();) {
@@ -68,8 +69,9 @@ bool trips_assertion(std::string_view text) {
   return false;
 }
 
-// An assertion does not say where it failed. The parser reads from left to right, so the shortest beginning of the text
-// that trips an assertion ends with the character that did it.
+// Returns the place of the character at which an assertion of the parser fails, which does not say where. The parser
+// reads from left to right, so the shortest beginning of the text that trips an assertion ends with the character that
+// did it.
 std::size_t place_of_assertion(std::string_view text) {
   std::size_t passes = 0, fails = text.size();
   while (passes + 1 < fails) {

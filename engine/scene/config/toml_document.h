@@ -1,5 +1,5 @@
-// Defines the parts of the TOML parser that Config, ConfigTable and ConfigValue hold. Only the three files that
-// implement them include this header.
+// Defines the parts of the TOML parser that Config, ConfigTable and ConfigValue hold. Only the files that implement
+// them, and toml_document.cpp, include this header.
 #pragma once
 
 #include <cstdint>  // the parser uses it and does not include it
@@ -44,7 +44,7 @@ struct Config::Content {
   std::vector<KnownKey> known;
   std::unordered_set<std::string> known_paths, documented_keys;  // the contents of the two lists, for looking up
   std::shared_ptr<KnownSurfaces> surfaces;
-  // Holds the places of the originals of copied nodes, because the parser does not copy them.
+  // Holds the place of the original of each copied node, because the parser does not copy places.
   std::map<const toml::node*, toml::source_region> moved;
 
   const toml::source_region& source_of(const toml::node& node) const {

@@ -9,7 +9,7 @@
 namespace supple {
 
 // Returns what a step's inputs have for a body: drag where there is air, on cloth and on solids that ask for it, and
-// the gas that the body holds. Nothing where neither is there.
+// the gas that the body holds. Nothing where there is neither drag nor gas.
 inline std::optional<PartAir> air_of(const SceneDef& scene, const BodyDef& body) {
   PartAir air;
   if (scene.wind) air.drag = body.drag.value_or(body.cloth ? usual_drag : DragCoefficients{});

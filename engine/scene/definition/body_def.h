@@ -32,8 +32,8 @@ namespace supple {
 // Describes the material of a body or of one of its regions.
 struct SubstanceDef {
   Material material = Polynomial{1};
-  Fibre fibre;                          // its direction in the frame of the mesh or shape
-  std::optional<double> usual_density;  // of a preset [kg/m^3]
+  Fibre fibre;                          // fibres, with their direction in the frame of the mesh or shape
+  std::optional<double> usual_density;  // density of a preset [kg/m^3]
 };
 
 struct RegionDef {
@@ -87,9 +87,9 @@ struct Names<ColorSource> {
 // Says what a body does with other bodies and with itself (meeting.h). The table solver.contact is about how contact
 // with colliders is computed, and a collider has its own friction.
 struct BodyContactDef {
-  // Names the only bodies that it meets, none where the list is empty. Nothing: it meets all.
+  // The names of the only bodies that the body meets: none where the list is empty. Nothing: it meets all.
   std::optional<std::vector<std::string>> meets;
-  FilePlace meets_place;   // of `meets` in the file, for messages once all bodies are known
+  FilePlace meets_place;   // place of `meets`, for messages once all bodies are known
   bool self = true;        // whether it touches itself
   bool skin = false;       // whether the drawn skin touches colliders in the stead of the elements
   double friction = 0.5;   // its share of the coefficient of Coulomb's law between it and another body
@@ -100,25 +100,25 @@ struct BodySurface;  // body_pieces.h
 
 struct BodyDef {
   std::string name;
-  std::string table;  // the name that paths have: that of the body's table, which pieces of a surface share
+  std::string table;  // name of the body's table in paths, which pieces of a surface and scattered copies share
   std::string label;  // the caption in pictures; empty: there is none
   std::vector<WarningKind> meant;  // warnings that need not be said
   // One of these five members gives the mesh. The regions of a mesh file are named by their reference numbers.
   std::filesystem::path shape;
   std::filesystem::path surface;
   SurfaceOptions surface_options;
-  Pieces pieces = Pieces::join;                     // of the surface
+  Pieces pieces = Pieces::join;                     // which pieces of the surface become bodies
   std::shared_ptr<const BodySurface> read_surface;  // what was read of `surface`; null: nothing yet
   std::size_t piece = 0;                            // number of the surface's piece that is this body
   std::filesystem::path mesh;
   std::optional<BoxDef> box;
   std::optional<ClothDef> cloth;
-  int vertices = 0;               // of the tetrahedra made from a shape
-  std::optional<double> size;     // longest side; otherwise the file's units are metres [m]
+  int vertices = 0;               // number of vertices of elements made from a shape or surface
+  std::optional<double> size;     // longest side; nothing: the file's units are metres, times `scale` [m]
   double scale = 1;               // used where no size is given
   Vec3 position = Vec3(0, 0, 0);  // of the middle of the bounding box's bottom [m]
   Vec3 turn_deg = Vec3(0, 0, 0);
-  Vec3 table_turn_deg = Vec3(0, 0, 0);  // without the random turn of a copy; copies share the skins of this turn
+  Vec3 table_turn_deg = Vec3(0, 0, 0);  // the table's own turn, without a copy's random one; skins are made for it
   std::optional<double> density;        // [kg/m^3]; of cloth [kg/m^2]
   std::optional<double> total_mass;     // spread over the volume, or over the area of cloth [kg]
   SubstanceDef substance;               // of solids
@@ -128,19 +128,19 @@ struct BodyDef {
   StartInside start_inside = StartInside::move;
   Vec3 velocity = Vec3(0, 0, 0);         // at the start [m/s]
   Vec3 spin_deg = Vec3(0, 0, 0);         // at the start, about the centre of mass [degrees/s]
-  std::optional<DragCoefficients> drag;  // nothing: the usual ones on cloth, and none on solids
-  std::optional<GasFilling> pressure;    // of gas in its surface
-  FilePlace pressure_place;              // in the file, for messages once the surface is known
+  std::optional<DragCoefficients> drag;  // nothing: the usual drag on cloth, and none on solids
+  std::optional<GasFilling> pressure;    // gas in its surface; nothing: none
+  FilePlace pressure_place;              // place of `pressure`, for messages once the surface is known
   BodyContactDef contact;
   std::vector<RegionDef> regions;
   std::vector<HandleDef> handles;
   SolverDef solver;
   Pattern pattern = Pattern::none;
-  bool usual_pattern = false;          // the scene names no pattern, so that colours of a file have none over them
+  bool usual_pattern = false;          // whether the scene names no pattern; cloth with colours of a file then has none
   std::optional<double> pattern_size;  // edge of the pattern's squares [m]
   std::optional<Vec3> color;           // replaces the shape's own colours [sRGB]
-  std::optional<Vec3> back_color;      // of the back of cloth [sRGB]
-  std::optional<double> yarn;          // between two yarns of cloth; 0: none are drawn [m]
+  std::optional<Vec3> back_color;      // colour of the back of cloth [sRGB]
+  std::optional<double> yarn;          // distance between two yarns of cloth; 0: none are drawn [m]
   ColorSource colors = ColorSource::usual;
   std::optional<double> gloss;  // of the uncovered surface
   Finish finish;

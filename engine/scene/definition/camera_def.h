@@ -23,10 +23,9 @@ struct CameraKey {
 
 // Names what a camera without a place of its own has in the picture.
 enum class Framed {
-  automatic,  // the whole motion where the bodies leave the picture of the start, by the same first pass; else the
-              // start
+  automatic,  // as `film` where a rough first pass finds that bodies leave the picture; else as `start`
   start,      // the bodies where they start, and the ground below those that will fall
-  film,       // the bodies' whole motion, which a rough first pass finds, or a drawing knows
+  film,       // the bodies' whole motion, which a rough first pass finds; for drawings the run knows it
 };
 template <>
 struct Names<Framed> {
@@ -43,13 +42,13 @@ struct CameraDef {
   double fov_deg = 30;             // vertical
   Framed frames = Framed::start;
   static constexpr double margin_of_motion = 1.05;
-  double margin = 1.25;          // air around what is framed
-  bool has_usual_margin = true;  // then it is margin_of_motion where the whole motion is framed
+  double margin = 1.25;          // how much wider the picture is than what is framed; 1: no air around it
+  bool has_usual_margin = true;  // whether the scene gives none: then it is margin_of_motion around a whole motion
   double orbit_deg = 0;          // how fast the eye goes round the target [degrees/s]
   std::string follow;            // the body or collider that the camera moves along with; empty: none
   Ease ease = Ease::smooth;
   std::vector<CameraKey> keys;  // in order of time
-  double shutter_deg = 0;       // how much of a frame the shutter is open, of 360; 0: for an instant
+  double shutter_deg = 0;       // share of a frame for which the shutter is open, times 360; 0: for an instant
   double aperture = 0;          // diameter of the lens; 0: all is sharp [m]
   // The body or collider of this name is sharp, or what is at this distance along the direction of the view [m];
   // without both, the target is.

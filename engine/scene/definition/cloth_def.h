@@ -18,7 +18,7 @@ namespace supple {
 // Describes what a cloth is made of where it is no net of springs.
 struct FabricDef {
   Fabric fabric;
-  std::optional<double> usual_density;  // of a preset [kg/m^2]
+  std::optional<double> usual_density;  // density of a preset [kg/m^2]
 };
 
 // Says in which shape each triangle of a surface is at rest.
@@ -43,18 +43,18 @@ struct SeamDef {
 // springs.
 struct ClothDef {
   std::filesystem::path mesh, surface;             // both empty: a grid
-  Eigen::Vector2d extent = Eigen::Vector2d(1, 1);  // of the grid [m]
+  Eigen::Vector2d extent = Eigen::Vector2d(1, 1);  // width and height of the grid [m]
   Eigen::Vector2i cells = Eigen::Vector2i(40, 40);
-  std::optional<double> edge;  // wanted mean length of edges; the triangles stay as they are [m]
-  Vec3 grain = Vec3(0, 1, 0);  // direction of the warp, in the frame of the file; a triangle has it in its plane
+  std::optional<double> edge;  // wanted mean length of edges; nothing: the triangles stay as they are [m]
+  Vec3 grain = Vec3(0, 1, 0);  // direction of the warp, in the file's frame; projected onto each triangle
   ClothCut cut = ClothCut::surface;
-  std::optional<double> cut_scale;  // of one unit of the texture; nothing: as much as keeps the area [m]
-  FilePlace cut_place;              // in the file, for messages once the surface is known
-  std::optional<double> sew;        // of vertices on the border that become one, the distance at most [m]
+  std::optional<double> cut_scale;  // length of a unit of the texture; nothing: the one that keeps the area [m]
+  FilePlace cut_place;              // place of `cut`, for messages once the surface is known
+  std::optional<double> sew;        // largest distance between vertices of the border that become one [m]
   std::vector<SeamDef> seams;
-  double seam_time = 1;                     // from the start of the film, after which seams are closed [s]
-  std::optional<FabricDef> fabric;          // nothing: it is made of springs
-  bool curved = false;                      // a fabric bends from the shape that the file has; else it is flat at rest
+  double seam_time = 1;                     // time from the start of the film after which seams are closed [s]
+  std::optional<FabricDef> fabric;          // nothing: the cloth is made of springs
+  bool curved = false;                      // whether a fabric bends from the file's shape; else it is flat at rest
   double stretch = 0, shear = 0, bend = 0;  // stiffness of a spring [N/m]
 };
 

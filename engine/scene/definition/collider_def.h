@@ -24,7 +24,7 @@ struct ColliderDef {
   double thickness = 0;    // [m]
   Ease ease = Ease::smooth;
   std::vector<MotionKey> keys;
-  std::optional<SurfaceMotionDef> motion;  // nothing: it is rigid
+  std::optional<SurfaceMotionDef> motion;  // how its surface deforms; nothing: it is rigid
   bool visible = true;
   std::optional<Vec3> color;  // [sRGB]
   Finish finish;

@@ -1,5 +1,5 @@
 // Provides fabrics under everyday names. Densities and bending are measured (the sources stand at the rows); one number
-// stands for bending along warp and weft. Stretch and shear are a tenth to a fiftieth of what such fabrics have, some
+// stands for bending along warp and weft. Stretch and, mostly, shear are lower than in such fabrics, which have some
 // 1e4 N/m and 30 to 100 N/m (Fan, Yu, Hunter 2004, "Clothing appearance and fit", chapter 1): a metre of cloth still
 // stretches by a few thousandths under its weight, which is not seen, and ten iterations at thirty steps a second solve
 // its motion, which they do not at the whole stiffness.

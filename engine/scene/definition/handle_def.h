@@ -21,7 +21,7 @@ struct AttachDef {
 struct HandleDef {
   std::string name;
   Selection select;
-  double stiffness = 0;  // of the spring from each vertex to its target, 0: hard [N/m]
+  double stiffness = 0;  // stiffness of the spring from each vertex to its target; 0: hard [N/m]
   // A handle that grabs holds its vertices from one time to another [s]. Its keys are relative to the vertices'
   // positions when it begins to hold them.
   bool grabs = false;

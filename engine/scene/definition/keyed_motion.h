@@ -13,8 +13,8 @@ namespace supple {
 
 struct MotionKey {
   double time = 0;                // [s]
-  Vec3 move = Vec3(0, 0, 0);      // from rest [m]
-  Vec3 turn_deg = Vec3(0, 0, 0);  // about the handle's centre, or the collider's origin
+  Vec3 move = Vec3(0, 0, 0);      // displacement from rest [m]
+  Vec3 turn_deg = Vec3(0, 0, 0);  // rotation about the handle's centre, or the collider's origin
 };
 
 enum class Ease { smooth, linear };

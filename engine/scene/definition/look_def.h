@@ -37,11 +37,11 @@ struct LookDef {
   Vec3 ground = Vec3(0.914, 0.894, 0.863);      // sRGB
   Vec3 background = Vec3(0.851, 0.871, 0.902);  // sRGB
   double exposure = 1;
-  bool show_labels = true;      // captions are drawn
-  bool supports = true;         // what holds the bodies is seen
+  bool show_labels = true;      // whether captions are drawn
+  bool supports = true;         // whether plates, rings, rods and pins show what holds the bodies
   std::filesystem::path ghost;  // folder of a run whose bodies are seen through these; empty: none
-  bool marks = false;           // where handles hold vertices, and where vertices touch colliders
-  bool wireframe = false;       // bodies are drawn as their elements, with the elements' edges
+  bool marks = false;           // whether marks show where handles hold vertices, and where vertices touch colliders
+  bool wireframe = false;       // whether bodies are drawn as their elements, with the elements' edges
 };
 
 }  // namespace supple

@@ -16,7 +16,7 @@ struct SceneDef;
 // Tells whether two bodies that are not the same one meet.
 bool meet(const BodyDef& a, const BodyDef& b);
 
-// Tells the same of two bodies of a scene, by their indices; false where they are one.
+// Tells whether two bodies of a scene, given by their indices, meet; false where these are the same.
 bool meet(const SceneDef& scene, std::size_t a, std::size_t b);
 
 // Tells whether a body touches itself.
@@ -39,7 +39,7 @@ double pair_friction(const BodyDef& a, const BodyDef& b);
 // It is 0 where one is a cloth, which has no motion as a whole.
 double pair_restitution(const BodyDef& a, const BodyDef& b);
 
-// Returns the same of a body and a collider.
+// Does the same for a body and a collider.
 double pair_restitution(const BodyDef& body, const ColliderDef& collider);
 
 }  // namespace supple

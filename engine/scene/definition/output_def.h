@@ -10,9 +10,9 @@ namespace supple {
 struct OutputDef {
   int width = 1280;
   int height = 720;
-  double aspect = 0;                     // width over height for which the camera was placed; 0: those of the pictures
-  int samples = 4;                       // of antialiasing, a pixel
-  int blur_samples = 0;                  // pictures that one with blur is the mean of; 0: as many as the blur asks for
+  double aspect = 0;                     // width over height for which the camera was placed; 0: that of the pictures
+  int samples = 4;                       // samples a pixel for antialiasing
+  int blur_samples = 0;                  // number of pictures of which a blurred one is the mean; 0: the blur decides
   bool energy = false;                   // whether kinetic, elastic and gravitational energy are computed each frame
   std::vector<PicturePass> passes = {};  // pictures in numbers beside those of the film, in ascending order
 };

@@ -28,7 +28,7 @@ Material law_of(const Lame& lame) {
 }
 
 // The moduli have the order that tables of engineering materials give for table jelly, a soft silicone rubber, muscle
-// at rest and balsa (whose true fibre modulus is ten times higher, more than ten iterations per step resolve).
+// at rest and balsa (whose true fibre modulus is ten times higher; ten iterations per step would not resolve it).
 // Poisson's ratio stays in the range where linear tetrahedra do not lock.
 inline constexpr std::array material_presets = {
     MaterialPreset{"jelly", "table jelly: wobbles under its own weight", 1e4, 0.4, 1050, 0, law_of<NeoHookean>},

@@ -25,22 +25,22 @@
 
 namespace supple {
 
-// Names the frame of an earlier run with whose end a film begins.
+// Names the frame of an earlier run at whose end a film begins.
 struct EarlierFrame {
   std::filesystem::path run;    // the folder of the run
-  int frame = 0;                // of the run
+  int frame = 0;                // number of the frame in the run
   std::optional<double> clock;  // time at the end of that frame; nothing: (frame + 1) / fps of this film [s]
   FilePlace place;
 };
 
 struct SceneDef {
-  std::string name;   // of the file, without folder and ending
+  std::string name;   // name of the file, without folder and ending
   std::string title;  // shown in pictures where text.title asks for it
   int frames = 120;
   FrameRate fps = 30;
   int substeps = 1;
   Vec3 gravity = Vec3(0, -9.81, 0);
-  std::uint64_t seed = 1;            // of random start states, and of gusts
+  std::uint64_t seed = 1;            // seed of random start states and of gusts
   std::optional<EarlierFrame> from;  // nothing: the film begins at time 0, as the scene says
   std::optional<Wind> wind;          // nothing: there is no air
   std::vector<BodyDef> bodies;
@@ -54,7 +54,7 @@ struct SceneDef {
   std::filesystem::path assets;
 
   double time_step() const { return 1 / (fps * substeps); }
-  // Returns how many frames, of this film's rate, the clock has behind it when the film begins. Frames of the film are
+  // Returns how many frames at this film's rate have passed on the clock when the film begins. Frames of the film are
   // counted from 0.
   int frames_before() const {
     if (!from) return 0;

@@ -28,11 +28,11 @@ struct Selection {
   std::vector<Vec3> points;                           // nearest
   std::string group;                                  // a name in the file
   Vec3 color = Vec3(0, 0, 0);                         // [sRGB]
-  double tolerance = 0.1;                             // of each channel of the colour
+  double tolerance = 0.1;                             // by how much each channel of the colour may differ
   std::filesystem::path mask;                         // a picture over the texture coordinates
-  std::shared_ptr<const Texture> picture;             // what was read of it; null: nothing
-  double above = 0.5;                                 // its pixels that are brighter take vertices; 0 black, 1 white
-  bool border = false;                                // of these, only those on the open border of a cloth
+  std::shared_ptr<const Texture> picture;             // the pixels of the mask; null: they were not read
+  double above = 0.5;                                 // brightness above which its pixels select; 0 black, 1 white
+  bool border = false;                                // whether only vertices on the open border of a cloth are taken
   FilePlace place;                                    // in the file, for messages once the mesh is known
 };
 

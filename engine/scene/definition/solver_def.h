@@ -9,7 +9,8 @@
 
 namespace supple {
 
-// Returns the settings that scenes begin with. Nobody sees in a film how a body that lies still could lie better.
+// Returns the settings that scenes begin with. In films, a step ends early where bodies lie still, because what it
+// leaves out cannot be seen ("What lies still" in docs/method.md).
 inline SolverSettings settings_of_films() {
   SolverSettings settings;
   settings.still = 1e-6;
@@ -28,7 +29,7 @@ struct SolverDef {
   Integrator integrator = Integrator::backward_euler;
   double damping = 0;     // beta [s]
   double calming = 0;     // rate at which movement within the body dies down (sim/solver/calming.h) [1/s]
-  bool untangle = false;  // makes steps that start tangled those of a body as rigid as possible (moving_body.h)
+  bool untangle = false;  // whether steps that start tangled take the as-rigid-as-possible material (moving_body.h)
 };
 
 }  // namespace supple

@@ -270,7 +270,8 @@ void read_substances(const ConfigTable& table, BodyDef& body) {
   }
 }
 
-// Files are named after bodies, with up to 16 additional bytes, and file systems allow 255.
+// Refuses names that paths and files cannot have. Files are named after bodies, with up to 16 additional bytes, and
+// file systems allow 255 bytes.
 void check_name(const ConfigTable& table, const std::string& name) {
   constexpr std::size_t longest = 200;
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };

@@ -27,7 +27,7 @@ Shape read_collider_shape(const ConfigTable& table) {
   return ball;
 }
 
-// Returns the surface file that is a whole shape; null where it is anything else.
+// Returns the surface file of which a shape consists; null where the shape is anything else.
 const KnownSurfaces::Read* lone_surface_of(const Shape& shape, const KnownSurfaces& known) {
   if (shape.root.parts.size() != 1 || shape.root.parts.front().mirror_x) return nullptr;
   const auto* surface = std::get_if<ClosedSurface>(&shape.root.parts.front().primitive);

@@ -30,7 +30,8 @@ Fabric read_elastic_sheet(const ConfigTable& table) {
   return {M::from(PlaneLame::from_young(young, poisson, thickness), compression), bend};
 }
 
-// from: the fabric that has the numbers that the table does not give; null: those without a default must be given.
+// Reads a woven fabric. from: the fabric that has the numbers that the table does not give; null: numbers without a
+// default must be given.
 Fabric read_woven(const ConfigTable& table, const Fabric* from) {
   Woven woven = from != nullptr ? std::get<Woven>(from->membrane) : Woven();
   const auto given = [&](double value) { return from != nullptr ? std::optional(value) : std::nullopt; };

@@ -31,8 +31,8 @@ std::optional<Creep> read_creep(const ConfigTable& body) {
   return creep;
 }
 
-// Tells whether each step computes all that its directions start from, so that it knows what has flowed. The other
-// methods keep matrices or rest shapes from before the film.
+// Tells whether the steps of a solver know what has flowed. Other solvers keep rest shapes, or matrices of the rest
+// pose or of an earlier step; A does not depend on flow (docs/method.md).
 bool follows_flow(const SolverDef& solver) {
   const Method& method = solver.method;
   const bool keeps_rest = method.matrix == StartMatrix::rest_hessian ||

@@ -43,11 +43,11 @@ constexpr double fall = 0.1;         // over the model's height
 constexpr double frames_a_second = 30;
 constexpr int coarse_vertices = 800, film_vertices = 4000;  // a solid has as many where a scene says nothing
 
-// Holds what is known of a model once it has been read: its elements, as it will stand.
+// Holds what is known of a model once it has been read and stood up.
 struct StandingModel {
   TetMesh mesh;   // coarse, as large as in the film
-  double height;  // of all of it [m]
-  double sole;    // of the height: what is as low as this stands on the ground
+  double height;  // height of the whole model [m]
+  double sole;    // share of the height: what is as low as this stands on the ground
   Upright upright;
   double young = 0;  // [Pa]
 

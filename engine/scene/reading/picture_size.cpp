@@ -15,7 +15,7 @@ constexpr std::array<std::pair<const char*, PictureSize>, 5> named_sizes = {{{"p
                                                                              {"1080p", {1920, 1080}},
                                                                              {"4k", {3840, 2160}}}};
 
-// The sides that output.width and output.height may have.
+// Tells whether output.width and output.height may have this value.
 bool is_allowed(int side) { return side >= 16 && side <= 8192 && side % 2 == 0; }
 
 }  // namespace

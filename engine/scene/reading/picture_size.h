@@ -13,7 +13,7 @@ struct PictureSize {
 // Returns the size that a name or WIDTHxHEIGHT says; nothing where it says none, or one that no film can have.
 std::optional<PictureSize> picture_size(const std::string& text);
 
-// Says what is allowed.
+// Lists the names and sizes that picture_size() accepts, for messages.
 std::string picture_size_words();
 
 }  // namespace supple

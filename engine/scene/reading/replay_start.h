@@ -14,7 +14,7 @@ namespace supple {
 bool is_replay(Config& document);
 
 // Returns the file of the scene that a replay names: one that ships, or a file in the replay's folder. Empty where
-// there is none; the replay then has the problem.
+// there is no such file; the problem is then recorded in the replay.
 std::filesystem::path replayed_scene(Config& replay, const std::filesystem::path& assets);
 
 // Returns the document of the scene that a replay names, with the replay's title, frames, [set] and grabs in it.

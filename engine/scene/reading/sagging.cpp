@@ -8,13 +8,13 @@
 namespace supple {
 namespace {
 
-constexpr double collapsed = 4;  // times the wanted sag, beyond which it is not followed
+constexpr double collapsed = 4;  // times the wanted sag: a body that sinks further is not followed
 
 // Says how a body is watched.
 struct Watch {
   double time_step;  // [s]
   int steps;
-  double speed;  // with which the body comes down when it is held [m/s]
+  double speed;  // speed at which the body comes down when its sole is held [m/s]
 };
 
 BodyDescription standing_body(const TetMesh& mesh, const Sagging& sagging, double young, double time_step) {
@@ -34,19 +34,19 @@ BodyDescription standing_body(const TetMesh& mesh, const Sagging& sagging, doubl
   return body;
 }
 
-// Returns the direction in which a body leans, horizontally and of length 1: perfect balance does not count as standing,
-// and a push against the way that a body would fall must not hold it up.
+// Returns the horizontal direction, of length 1, in which a body leans; a fixed one where it leans nowhere. A body is
+// pushed that way, because perfect balance does not count as standing, and a push the other way might hold it up.
 Vec3 leaning_direction(const Model& model, const State& state) {
-  constexpr double upright = 1e-6;  // of the size: it leans nowhere
+  constexpr double upright = 1e-6;  // share of the size: less is no lean
   Vec3 way = (state.x - model.rest).colwise().mean().transpose();
   way.y() = 0;
   return way.norm() > upright * model.size ? way.normalized() : Vec3(1, 0, 1).normalized();
 }
 
-// Returns how far the place that sinks furthest has sunk at the end, over the height; more than `collapsed` times the
-// wanted share where it has sunk as far at any time.
+// Returns how far the place that sinks furthest has sunk at the end, over the height; at least `collapsed` times the
+// wanted share where it has sunk as far at any time; 1 where a step fails.
 double watched_sag(const TetMesh& mesh, const Sagging& sagging, double young, const Watch& watch) {
-  constexpr double lean = 0.05;  // of its weight, to the side
+  constexpr double lean = 0.05;  // force to the side, over the weight
   const BodyDescription body = standing_body(mesh, sagging, young, watch.time_step);
   if (std::ssize(body.handles.front().vertices) == mesh.rest.rows()) return 0;
   const Model model = build_model(body);
@@ -76,9 +76,11 @@ double sag_of(const TetMesh& mesh, const Sagging& sagging, double young) {
 
 double young_for_sag(const TetMesh& mesh, const Sagging& sagging, double first_guess) {
   constexpr int most_trials = 9;
-  constexpr double near = 0.2;     // of the wanted sag
-  constexpr double stiffer = 2.5;  // where the body collapses, so that its sag says nothing
-  constexpr double narrow = 1.3;   // what buckles sags hardly at all, or collapses: between the two there is no sag
+  constexpr double near = 0.2;     // accepted difference from the wanted sag, over that sag
+  constexpr double stiffer = 2.5;  // factor where the body collapses, so that its sag says nothing
+  // The search ends once both bounds of the modulus are within this factor: a body that buckles either hardly sags or
+  // collapses, so that there may be no modulus with the wanted sag.
+  constexpr double narrow = 1.3;
   const double height = bounds_of(mesh.rest).extent().y();
   // A column of this height with the same section everywhere sags as it should with this modulus.
   const double of_column = sagging.density * standard_gravity * height / (2 * sagging.share);

@@ -43,7 +43,7 @@ std::vector<Vec3> spread_points(const std::vector<Vec3>& box, int count, Uniform
   return points;
 }
 
-// Returns a turn of which all are equally likely (Shoemake 1992, "Uniform random rotations").
+// Returns a random turn; all turns are equally likely (Shoemake 1992, "Uniform random rotations").
 Eigen::Quaterniond any_turn(UniformNumbers& numbers) {
   const double share = numbers.between(0, 1);
   const double a = numbers.between(0, 2 * std::numbers::pi), b = numbers.between(0, 2 * std::numbers::pi);

@@ -10,7 +10,7 @@
 
 namespace supple {
 
-// Selects how copies are turned beside what their body says.
+// Selects how copies are turned, in addition to the turn of their body.
 enum class ScatterTurn {
   heading,  // about the vertical
   any,
@@ -24,10 +24,10 @@ struct Names<ScatterTurn> {
 
 // Describes one copy.
 struct ScatteredCopy {
-  std::string body;  // of which it is a copy
+  std::string body;  // name of the body that is copied
   Vec3 position;     // [m]
   Eigen::Quaterniond turn;
-  double size;  // factor
+  double size;  // factor of the body's size
 };
 
 struct Scattering {
@@ -38,11 +38,11 @@ struct Scattering {
 // Reads the tables [[scatter]] of a scene's root. seed: the scene's.
 std::vector<Scattering> read_scatterings(const ConfigTable& root, std::uint64_t seed);
 
-// Returns the copies of a body, named NAME_1, NAME_2, ...; the body itself where nothing scatters it. table: the
-// body's.
+// Returns the copies of a body, named NAME_1, NAME_2, ...; the body itself where nothing scatters it. table: that of
+// the body.
 std::vector<BodyDef> copies_of(const std::vector<Scattering>& scatterings, const ConfigTable& table, BodyDef body);
 
-// Complains of bodies that are scattered but not there. names: of the tables [[body]].
+// Complains of bodies that are scattered but not there. names: those that the tables [[body]] have.
 void check_scattered(const ConfigTable& root, const std::vector<Scattering>& scatterings,
                      const std::vector<std::string>& names);
 

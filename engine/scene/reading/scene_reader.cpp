@@ -27,7 +27,8 @@ const std::vector<std::set<std::string>>& exclusive_keys() {
 
 namespace {
 
-// Reads a size by name, which stands over width and height. These then tell for which shape the camera was placed.
+// Reads `size`, which replaces width and height. The aspect for which the camera was placed remains that of the
+// replaced ones.
 void read_size(const ConfigTable& table, OutputDef& output) {
   const std::string text = table.text({"size", "",
                                        "portrait, square, 720p, 1080p, 4k or WIDTHxHEIGHT, over width and height: a "

@@ -10,7 +10,8 @@ namespace supple {
 // Reads the scene. Records problems in the config; the result may be used only if there are none.
 SceneDef read_scene(Config& config);
 
-// Loads a file, applies the "path=value" settings in order, and reads the scene. Throws InputError with all problems.
+// Loads a file, applies the "path=value" settings in order, and reads the scene. resolved_json: where not null, gets
+// the document with the settings. Throws InputError with all problems.
 SceneDef load_scene(const std::filesystem::path& path, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings, std::string* resolved_json = nullptr);
 

@@ -50,7 +50,8 @@ ClosedSurface known_surface(Config& config, const std::filesystem::path& file, c
   return at->second.surface;
 }
 
-// Reads the surface of a part, which has its size and place in the shape's frame; a body has its own.
+// Reads how the surface of a part is taken. Beside the options that bodies have too, a part gives the size and the
+// place that its surface has in the shape's frame.
 SurfaceOptions read_part_surface(const ConfigTable& part) {
   SurfaceOptions options = read_surface_options(part);
   options.size =

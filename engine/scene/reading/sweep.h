@@ -22,7 +22,7 @@ struct SweepDef {
   SweepMode mode = SweepMode::grid;
   std::vector<PathList> axes;  // in the order of the file; of a grid the last one varies fastest
 
-  std::size_t points() const;  // 0 without axes
+  std::size_t points() const;  // 0 without axes; of a grid, at most most_sweep_points + 1
   // Returns, for each axis, the index of its value at a point.
   std::vector<std::size_t> choice(std::size_t point) const;
   // Returns the value of each axis at a point, as people read it.

@@ -51,12 +51,13 @@ std::optional<Wind> read_wind(const ConfigTable& root, std::uint64_t seed);
 std::optional<DragCoefficients> read_drag(const ConfigTable& body);
 std::optional<GasFilling> read_pressure(const ConfigTable& body);
 
-// Reads [from] of a scene's root; nothing where it is absent.
+// Reads [from] of a scene's root; nothing where it is absent. fps: the rate of the film, which must have a frame that
+// ends at `clock`.
 std::optional<EarlierFrame> read_from(const ConfigTable& root, const FrameRate& fps);
 
 ColliderDef read_collider(const ConfigTable& table);
 
-// Reads [camera]. Keys that contradict each other are problems, and keys of a motion that are not in order of time.
+// Reads [camera]. Problems are values that contradict each other, and keys of its way that are not in order of time.
 CameraDef read_camera(const ConfigTable& table, CameraDef camera);
 
 // These read the tables [look], [field] and [text] of a scene's root.

@@ -14,7 +14,7 @@ namespace {
 constexpr double far_taller = 1.5;  // times each of the other two extents
 constexpr double steady = 0.12;     // a solid that stands as well as this hardly does so by chance
 constexpr double wobbly = 0.03;     // a solid that stands no better than this falls at the first jolt
-constexpr double sturdy = 0.15;     // what stands like this on wheels or legs is no tower that lies on its side
+constexpr double sturdy = 0.15;     // a solid that stands so well has wheels or legs, and is no tower on its side
 
 Vec3 center_of_mass(const TriMesh& surface) {
   Vec3 moment = Vec3::Zero();
@@ -36,13 +36,13 @@ std::string ending_in_small_letters(const std::filesystem::path& file) {
   return ending;
 }
 
-// Tells whether files of this kind say which axis is up: assimp turns what it reads of them, so that it is y.
+// Tells whether files of this kind say which axis is up: assimp turns what it reads of them, so that y is up.
 bool says_axis(const std::filesystem::path& file) {
   constexpr std::array saying = {".gltf", ".glb", ".dae", ".fbx", ".3ds", ".blend", ".x3d"};
   return std::ranges::find(saying, ending_in_small_letters(file)) != saying.end();
 }
 
-// Printers and CAD programs have z up.
+// Returns the axis that is usually up in files of this kind: z in those of printers and CAD programs, else y.
 UpAxis usual_axis(const std::filesystem::path& file) {
   const std::string ending = ending_in_small_letters(file);
   return ending == ".stl" || ending == ".3mf" ? UpAxis::z : UpAxis::y;
@@ -70,7 +70,7 @@ double steadiness(const TriMesh& surface, UpAxis up, double sole) {
 }
 
 double steady_sole(const TriMesh& surface) {
-  constexpr double least = 0.05;  // as steady as this, thin ankles need not carry the body's lean
+  constexpr double least = 0.05;  // steadiness at which thin ankles need not carry the body's lean
   for (const double sole : {0.05, 0.08, 0.12})
     if (steadiness(surface, UpAxis::y, sole) >= least) return sole;
   return 0.16;

@@ -22,7 +22,7 @@ struct TimedChange {
   double over = 0;     // how long the change takes; 0: a jump [s]
   Ease ease = Ease::smooth;
   RampRule by = RampRule::difference;
-  bool whole = false;  // the values of a ramp are rounded to whole numbers
+  bool whole = false;  // whether the values of a ramp are rounded to whole numbers
   ChangeCost cost;
   std::optional<ConfigValue> from;  // where a ramp begins
   ConfigValue to;
@@ -35,15 +35,16 @@ struct TimedChange {
 // Returns all that these changes require to be recomputed for one body or collider.
 ChangeCost cost_for(const std::string& name, const std::vector<TimedChange>& changes);
 
-// Describes a handle that grabs vertices of a body where they are. Its keys are joined evenly.
+// Describes a handle that grabs vertices of a body where they are. Its keys, which changes give, are joined evenly
+// (Ease::linear).
 struct LiveGrab {
   std::string body, name;
   std::vector<int> vertices;  // numbers, counted from 1
-  double stiffness = 0;       // of the spring from each vertex to its target [N/m]
+  double stiffness = 0;       // stiffness of the spring from each vertex to its target [N/m]
   double from = 0, until = std::numeric_limits<double>::infinity();  // [s]
 };
 
-// Lists both, in the order in which they were made.
+// Lists the changes and the grabs that were made, each in the order in which they were made.
 struct LiveEdits {
   std::vector<TimedChange> changes;
   std::vector<LiveGrab> grabs;

@@ -16,8 +16,8 @@ struct ChangeCost {
   bool factor = false;   // A and its factor: the body's stiffness, mass or time step
   bool rule = false;     // what the method keeps from step to step
   bool surface = false;  // the drawn surface of a collider
-  // Nothing is recomputed, but whether a body can take the value is known only once the body is there, so that replays
-  // are tried before they run.
+  // Whether replays try the value before they run: nothing is recomputed, but only a body that has been built can tell
+  // whether it can take the value.
   bool trial = false;
 
   ChangeCost& operator|=(const ChangeCost& other);

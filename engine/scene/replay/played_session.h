@@ -21,12 +21,12 @@ struct PlayedCut {
 };
 
 struct PlayedSession {
-  std::vector<std::uint64_t> hashes;  // of the states after each frame (World::hash)
-  std::vector<PlayedCut> cuts;        // of all steps that had a budget of time, ordered by frame
+  std::vector<std::uint64_t> hashes;  // hashes of the states after each frame (World::hash)
+  std::vector<PlayedCut> cuts;        // cuts of all steps that had a budget of time, ordered by frame
   bool empty() const { return hashes.empty() && cuts.empty(); }
 };
 
-// Reads the table [session] of a replay, where there is one. Problems are the document's.
+// Reads the table [session] of a replay, where there is one. Problems are recorded in the replay.
 PlayedSession read_session(const ConfigTable& replay);
 
 // Puts the table [session] into a replay in place of the one that it has; takes it out for an empty session.

@@ -36,7 +36,7 @@ class Script {
   bool is_replay() const;
   const SceneDef& scene() const;  // as the film starts
   const std::vector<TimedChange>& changes() const;
-  // Returns what the live session has noted that wrote this replay; empty where none has.
+  // Returns what the live session that wrote this replay has noted; empty where no session wrote it.
   const PlayedSession& session() const;
 
   // Returns the changes that alter a value between the start and the end of a frame.
@@ -49,25 +49,26 @@ class Script {
   // specify.
   std::vector<Problem> warnings() const;
 
-  // These edit the film while it is made: a film of the replay that replay_files() returns is the same to the last bit.
-  // They throw InputError with all that is wrong, and then change nothing.
+  // The functions from here to set_edits() edit the film while it is made: a film of the replay that replay_files()
+  // returns is the same to the last bit. They throw InputError with all that is wrong, and then change nothing.
   //
   // Adds a change as if the replay's file had it behind all others that begin at that time, which must be the beginning
   // of a frame. Fills in its object, its cost and, for a ramp, where it begins.
   void add(TimedChange change);
   // Adds a handle to a body, behind those that it has.
   void add(const LiveGrab& grab);
-  // Lets a grab end, later than it begins [s].
+  // Ends a grab at a time [s], which must be later than its beginning.
   void end_grab(const std::string& body, const std::string& name, double until);
   const LiveEdits& edits() const;
-  // Replaces all edits by those that were in force once. Throws InputError, and changes nothing, where they are of
-  // another scene.
+  // Replaces all edits by those that were in force at another time. Throws InputError, and changes nothing, where they
+  // are of another scene.
   void set_edits(LiveEdits edits);
   // Returns the replay with all edits, which `file` will have. frames: the length of its film; session: what the frames
   // so far have left. A file in the root folder names its scene with the whole path, so that it can be read anywhere.
   // Throws InputError where `file`, or the one beside it that the scene needs, is the scene that was loaded.
   ReplayFiles replay_files(const std::filesystem::path& file, int frames, const PlayedSession& session = {}) const;
-  // Returns the same with settings, as --set takes them, that hold at any time, whatever changes. Throws InputError.
+  // Returns a copy of the script with settings, as --set takes them, that hold at any time, whatever changes. Throws
+  // InputError.
   Script with(const std::vector<std::string>& settings) const;
 
   std::string scene_json() const;              // as the film starts

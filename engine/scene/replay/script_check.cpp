@@ -100,7 +100,7 @@ std::optional<ConfigValue> Script::Parts::value_at(const std::string& path, Conf
   return std::nullopt;
 }
 
-// Finds the value at which a ramp begins. Returns the reasons why it cannot be a ramp.
+// Finds the value at which a ramp begins. Returns the problems that keep the change from being a ramp.
 std::vector<Problem> Script::Parts::prepare(TimedChange& ramp, std::size_t index) const {
   const auto before = [&] { return document_at(ramp.at + at_start, index); };
   if (!ramp.from) ramp.from = value_at(ramp.path, before());

@@ -1,5 +1,5 @@
-// Defines the parts that a Script owns. Only script.cpp, which reads it, and script_check.cpp, which checks it, include
-// this header.
+// Defines the parts that a Script owns. script.cpp reads it, script_check.cpp checks it, and script_writer.cpp writes
+// it. live_keys.cpp uses table_of() alone; no other file includes this header.
 #pragma once
 
 #include <set>
@@ -16,20 +16,20 @@ constexpr double at_start = 2 * time_tolerance;
 
 struct Script::Parts {
   SceneSource source;
-  std::vector<std::string> settings;  // that were given beside the source
+  std::vector<std::string> settings;  // settings that were given beside the source
   std::optional<Config> replay;
   Config scene_file;  // the scene before any change
   SceneDef start;
   std::vector<TimedChange> changes;  // in the order of their beginnings
-  std::vector<Problem> problems;     // of the replay, while it is read
+  std::vector<Problem> problems;     // problems of the replay, while it is read
   LiveEdits edits;                   // they are in scene_file and changes, too
   struct Unedited {
     Config scene_file;
     std::vector<TimedChange> changes;
   };
-  std::optional<Unedited> unedited;        // nothing: there was no edit yet
-  PlayedSession session;                   // of the replay
-  std::vector<std::string> last_settings;  // that replace what the scene has at any time (Script::with)
+  std::optional<Unedited> unedited;        // what the edits are added to; nothing: there was no edit yet
+  PlayedSession session;                   // what the replay holds of a live session
+  std::vector<std::string> last_settings;  // settings that hold at any time, whatever changes (Script::with)
 
   // Returns the scene's document at a time, with the first `count` changes applied. One of them can be left out.
   Config document_at(double time, std::size_t count, std::optional<std::size_t> left_out = {}) const;
@@ -44,13 +44,15 @@ struct Script::Parts {
   // Puts a value of the replay into a document. When its path leads to nothing, returns false and adds to `problems`.
   bool put(Config& document, const std::string& path, const ConfigValue& value, const FilePlace& place);
 
-  // Finds all problems of the changes, the values at which ramps begin, and the scene at the start. A change that has a
-  // problem is removed, so that the others can still be checked. Throws InputError with all problems, earlier ones too.
+  // Finds the values at which ramps begin, and all problems of the changes, also of the scene at the start. A change
+  // that has a problem is removed, so that the others can still be checked. Throws InputError with all problems,
+  // earlier ones too.
   void check_changes();
 
   // Adds a change of a film that is being made, and checks it in all frames from its beginning on.
   void add_change(TimedChange change);
-  // Takes scene and changes from `unedited` and `edits`, without a check.
+  // Makes scene_file, changes and start from `unedited` and `edits`. Checks no more than the scene at the start. Throws
+  // InputError.
   void apply_edits();
 
  private:

@@ -14,7 +14,7 @@ ConfigValue value_of_text(const std::string& text, const std::string& source = "
   return ConfigValue::parse(text, source).value();
 }
 
-// Returns the scene as a replay names it, which lies in `folder`.
+// Returns the name by which a replay that lies in `folder` names the scene of a file.
 std::string scene_name(const std::filesystem::path& file, const std::filesystem::path& folder,
                        const std::filesystem::path& assets) {
   std::error_code error;
@@ -73,8 +73,8 @@ std::string comparable(const Config& document) {
 
 }  // namespace
 
-// Names the scene and has its settings in [set] where this says the same. Otherwise, the scene is written anew:
-// settings may reach a grab, or depend on their order.
+// Where that gives the same scene, the replay names the scene and has the settings in [set]. Otherwise, the scene is
+// written anew: settings may reach a grab, or depend on their order.
 ReplayFiles Script::replay_files(const std::filesystem::path& file, int frames, const PlayedSession& session) const {
   Parts& parts = *parts_;
   const std::filesystem::path& assets = parts.scene_file.assets();
