@@ -114,7 +114,7 @@ Located located(const Positions& points, const TetMesh& mesh) {
   return result;
 }
 
-// Gives each mesh vertex that carries something a frame, in the order of the vertices.
+// Returns the mesh vertices that carry something, in increasing order, and numbers their frames in this order.
 std::vector<std::int32_t> carrying_vertices(const std::vector<std::vector<Carrier>>& carriers, Eigen::Index vertices,
                                             std::vector<std::int32_t>& frame_of) {
   frame_of.assign(std::size_t(vertices), -1);

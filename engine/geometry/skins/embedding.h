@@ -10,7 +10,7 @@
 
 namespace supple {
 
-// By how much a frame of Embedding::frames counts for a point.
+// Says by how much a frame of Embedding::frames counts for a point.
 struct FrameShare {
   std::int64_t frame;  // as wide as the share, so that no byte of a list is padding and lists are kept as they are
   double share;        // not negative
@@ -33,18 +33,19 @@ struct Embedding {
 // follow each other's elements.
 Embedding embed(const TriMesh& skin, const TetMesh& mesh);
 
-// Embeds a skin that has got more vertices in the middle between two of them: `ends` by new vertex, in the order of the
-// new ones, which may lie between earlier ones. What carries both carries the new one, unless it lies in an element. It
-// need not lie on the line between them. points: all vertices of the skin at rest, n x 3, in the frame of `mesh` [m].
+// Embeds a skin that has got more vertices, each in the middle between two others. ends: by new vertex, the two between
+// which it lies; some of these may be earlier new ones. A new vertex that lies in an element follows the element,
+// unless both of its ends are outside. Otherwise it follows the mean of what carries its ends. It need not lie on the
+// line between them. points: all vertices of the skin at rest, n x 3, in the frame of `mesh` [m].
 Embedding with_middles(const Embedding& embedding, const Positions& points,
                        const std::vector<std::array<std::int32_t, 2>>& ends, const TetMesh& mesh);
 
-// Returns the place of an embedded point at the mesh's current positions. frames: frames_at the same positions.
+// Returns the place of an embedded point at the mesh's current positions. frames: what frames_at() returns for these.
 Vec3 embedded_point(const Embedding& embedding, Eigen::Index point, const Positions& mesh_positions,
                     const std::vector<Mat3>& frames);
 
-// Returns the value at an embedded point of a field that is given by mesh vertex: a mean of those that carry the point,
-// so that no value lies beyond theirs.
+// Returns the value at an embedded point of a field that is given by mesh vertex: the mean of the values at those mesh
+// vertices that carry the point, so that it does not lie beyond them.
 double embedded_value(const Embedding& embedding, Eigen::Index point, const std::vector<double>& by_vertex);
 
 // Returns the places of all points, n x 3 [m].
@@ -53,7 +54,7 @@ Positions embedded_points(const Embedding& embedding, const Positions& mesh_posi
 // Makes the embedding one of a mesh and a skin that are `scale` times as large.
 void scale_lengths(Embedding& embedding, double scale);
 
-// Keeps the named points alone, in this order; the names ascend.
+// Keeps the points with the given numbers alone, in this order; the numbers must ascend.
 void keep_points(Embedding& embedding, const std::vector<std::int32_t>& kept);
 
 // Says how much of a skin lies outside all elements.

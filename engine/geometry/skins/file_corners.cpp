@@ -9,8 +9,9 @@
 namespace supple {
 namespace {
 
-// Returns the weights of a corner of a triangle of the raw surface, by the vertex that the triangle names there or,
-// where it is another's vertex on its side (-1), by its place.
+// Returns the weights of a place in a triangle of the raw surface: those of the corner at which the triangle names
+// `vertex` or, where it does not (-1: another triangle's vertex on its side), those of the triangle's point that is
+// closest to the place.
 Vec3 weights_of(const TriMesh& raw, Eigen::Index triangle, std::int32_t vertex, const Vec3& place) {
   for (int k = 0; k < 3; ++k)
     if (raw.triangles(triangle, k) == vertex) return Vec3::Unit(k);

@@ -1,6 +1,6 @@
-// Knows where the corners of a cloth's triangles come from: the places in the file's triangles that they had before
-// these were welded and got new edges. So what the file says of its triangles can be read there. Not here: surfaces
-// that were closed or cut, whose triangles find the file's by their places (surface_colors.h).
+// Tells where the corners of a cloth's triangles come from: the places that they had in the file's triangles before the
+// surface was welded and remeshed. So what the file says of its triangles can be read at the corners. Not here:
+// surfaces that were closed or cut, whose triangles find the file's by their places (surface_colors.h).
 #pragma once
 
 #include <array>
@@ -24,8 +24,9 @@ FileCorners corners_in(const TriMesh& raw, const WeldedSurface& welded);
 FileCorners corners_in(const FileCorners& before, const RemeshedSurface& remeshed);
 
 // Returns the edges between two triangles at which the file's texture coordinates jump, or its parts meet: two vertices
-// each, the lower one first and in increasing order. As lines that stay (RemeshOptions) they keep what the file says
-// the same on each of their sides. In a texture in which each triangle lies apart, they are all edges.
+// each, the lower one first and in increasing order. Where remeshing keeps them as lines (RemeshOptions), what the file
+// says on one side of them stays apart from what it says on the other. In a texture in which each triangle lies apart,
+// they are all edges.
 std::vector<std::array<std::int32_t, 2>> file_seams(const TriMesh& surface, const FileCorners& corners,
                                                     const ColoredSurface& file);
 

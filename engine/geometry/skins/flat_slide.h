@@ -10,7 +10,7 @@ namespace supple {
 // Moves the vertices of a subdivided skin on the flat cloth, in the pattern and in the texture as they have moved in
 // space: where the neighbours of a vertex do not lie evenly around it, it slides along the surface. Along seams, where
 // a vertex of the mesh has several such places, nothing moves. vertex_of: mesh vertex by skin vertex, before the skin
-// was subdivided. vertices: their number in the mesh.
+// was subdivided. vertices: the number of the mesh's vertices.
 void slide_on_flat(const SurfaceWeights& weights, const std::vector<std::int32_t>& vertex_of, Eigen::Index vertices,
                    Skin& skin);
 

@@ -42,7 +42,7 @@ struct EdgedSurface {
   std::vector<std::int32_t> begin, edge_at;  // by node, and one more: the edges that end there
 };
 
-// Returns a number that skin vertices share which have one normal.
+// Returns the number of a skin vertex's normal. Vertices that have one normal have one number.
 std::int32_t normal_of(const Skin& skin, std::int32_t vertex) {
   return skin.smooth.empty() ? vertex : skin.smooth[std::size_t(vertex)];
 }
@@ -115,7 +115,8 @@ NodeRing ring_of(const EdgedSurface& surface, std::size_t node) {
   return {NodeKind::smooth, std::move(all)};
 }
 
-// Returns the kinds of the nodes at rest, where a crease that turns has a corner.
+// Returns the rings of all nodes. corners: the corners of the first level, by node; empty: this is the first level,
+// where a crease that turns has a corner.
 std::vector<NodeRing> rings_of(const EdgedSurface& surface, const Positions& places, const std::vector<char>& corners) {
   std::vector<NodeRing> rings;
   for (std::size_t n = 0; n < std::size_t(surface.nodes); ++n) {
@@ -185,7 +186,8 @@ SparseRows one_level(const Skin& skin, const EdgedSurface& surface, const std::v
   return matrix_of(entries, row, surface.nodes);
 }
 
-// Cuts the triangles into four and appends the vertices between, each once for each side along which the skin is split.
+// Cuts each triangle into four, and appends the skin vertices in the middles of edges: one for each edge, or one for
+// each of its sides where the skin is split along it.
 void cut_triangles(Skin& skin, EdgedSurface& surface) {
   std::vector<std::array<std::int32_t, 3>> middles(std::size_t(skin.rest.triangles.rows()));
   SkinMiddles added(skin);

@@ -6,7 +6,7 @@
 namespace supple {
 namespace {
 
-// Each array is its number of rows, and then its values.
+// Appends an array: its number of rows, and then its values.
 template <class Values>
 void add_values(std::string& bytes, std::uint64_t rows, const Values* values, std::size_t count) {
   bytes.append(reinterpret_cast<const char*>(&rows), sizeof rows);
@@ -41,7 +41,7 @@ class Reader {
   bool at_end() const { return whole_ && rest_.empty(); }
 
  private:
-  // The number of rows of an array; 0 where fewer are left.
+  // Returns the number of rows of the next array; 0 where fewer are left, and then nothing more is read.
   std::uint64_t next_count(std::size_t row_bytes) {
     std::uint64_t count = 0;
     if (take(&count, sizeof count) && count > rest_.size() / row_bytes) whole_ = false;

@@ -96,8 +96,9 @@ class Feet {
     return graph_.normal.row(Eigen::Index(node)).dot(walk_.normal(foot.face)) > 0;
   }
 
-  // A point that lies in an element under a boundary that faces the other way belongs to another part: where two feet
-  // are near, the elements of one can reach through the skin of the other.
+  // Finds the points that belong to the elements in which they lie. One that lies in an element, and not deep, under a
+  // boundary that faces the other way belongs to another part: where two limbs are near each other, the elements of one
+  // can reach through the skin of the other.
   void find_inside() {
     for (std::size_t n = 0; n < foot_.size(); ++n) {
       if (located_.inside[std::size_t(graph_.vertex_of[n])] == 0) continue;
@@ -140,7 +141,8 @@ class Feet {
     }
   }
 
-  // A part of the skin that meets the solid nowhere follows from its vertex that is closest to the boundary.
+  // Starts a walk in each part of the skin that meets the solid nowhere, from its vertex that is closest to the
+  // boundary.
   void start_islands() {
     std::vector<std::pair<double, std::size_t>> left;
     for (std::size_t n = 0; n < foot_.size(); ++n) {
@@ -166,7 +168,7 @@ class Feet {
     return corners(node)[std::size_t(most)];
   }
 
-  // Lists the nodes that edges without a gap join, the smallest list first.
+  // Lists the nodes of each patch, which edges without a gap join, the smallest patch first.
   std::vector<std::vector<std::size_t>> patches() const {
     std::vector<std::vector<std::size_t>> result;
     std::vector<char> seen(foot_.size(), 0);
@@ -188,8 +190,8 @@ class Feet {
     return result;
   }
 
-  // A patch of the skin that lies in the elements of a part that is near but not joined follows the skin around it
-  // instead, where that is no further away than an element is large.
+  // Lets each patch of the skin that lies in the elements of a part that is near but not joined follow the skin around
+  // it instead, where the boundary that it then follows is no further away than `deep` of its edges.
   void join_strays() {
     std::vector<std::vector<std::size_t>> all = patches();
     std::vector<std::size_t> size(foot_.size());
@@ -245,7 +247,7 @@ class Feet {
   const Located& located_;
   MeshLinks links_;
   BoundaryWalk walk_;
-  std::vector<char> inside_;         // by node; those that belong to the element in which they lie
+  std::vector<char> inside_;         // by node: whether it belongs to the element in which it lies
   std::vector<BoundaryPoint> foot_;  // by node; inside: none
   std::vector<double> path_;         // by node; below 0: not reached yet
   std::priority_queue<Arrival, std::vector<Arrival>, std::greater<>> arrivals_;
@@ -269,7 +271,7 @@ class Blend {
   bool changed(std::size_t node) const { return rate_[node] > 0; }
 
  private:
-  // foot: none where the skin vertex lies in an element.
+  // Returns the shares before they are averaged. foot: none where the skin vertex lies in an element.
   static std::vector<Carrier> first_shares(const BoundaryPoint& foot, Eigen::Index skin_vertex, const Feet& feet,
                                            const Located& located) {
     std::vector<Carrier> shares;
@@ -282,18 +284,18 @@ class Blend {
     return shares;
   }
 
-  // Returns how far the mean of the carriers jumps from a node to a neighbour [m]. Where a short edge leads
-  // to carriers that share no element, these are of two parts that are near but not joined, and count as two edges of
-  // the mesh apart.
+  // Returns by how much the mean of the carriers jumps from a node to a neighbour, beyond 1.5 lengths of the edge [m].
+  // Where a short edge leads to carriers that share no element, these are of two parts that are near but not joined,
+  // and count as at least two edges of the mesh apart.
   double jump(std::size_t node, const SkinEdge& edge, const Feet& feet) const {
     const auto other = std::size_t(edge.to);
     const double apart = (mean_[node] - mean_[other]).norm() - 1.5 * edge.length;
     return feet.gap(node, edge) ? std::max(apart, 2 * feet.links().mean) : apart;
   }
 
-  // Finds over which length shares are averaged around each node [m]: the distance of a point outside from the
-  // boundary, but no less than least_reach, or a jump, and less further away from the jump. Shares of points inside
-  // change at jumps alone.
+  // Finds over which length shares are averaged around each node [m]. For a point outside it is the distance from the
+  // boundary, but no less than least_reach. At a jump it is no less than the jump. From a point to a neighbour outside
+  // it falls by no more than the way between them. Shares of points inside change at jumps alone.
   void find_reach(const Feet& feet) {
     reach_.assign(shares_.size(), 0);
     std::priority_queue<std::pair<double, std::int32_t>> queue;
@@ -316,7 +318,8 @@ class Blend {
     }
   }
 
-  // Averaging with rate a moves shares by sqrt(a) edges in each round, as diffusion does. Returns the number of rounds.
+  // Chooses the rate of averaging at each node, and returns the number of rounds. With the rate a, n rounds move shares
+  // by sqrt(n a) edges, as diffusion does.
   int choose_rates() {
     constexpr double largest_rate = 0.5;
     constexpr int most_rounds = 96;
@@ -359,7 +362,7 @@ class Blend {
     }
   }
 
-  // Returns what was added, without the least shares.
+  // Returns what was added, without shares up to least_share, and so scaled that the rest sums to 1.
   std::vector<Carrier> take() {
     std::ranges::sort(touched_);
     std::vector<Carrier> result;
@@ -379,7 +382,7 @@ class Blend {
 
   const SkinGraph& graph_;
   std::vector<std::vector<Carrier>> shares_;  // by node
-  std::vector<Vec3> mean_;                    // by node: of its first carriers, at rest [m]
+  std::vector<Vec3> mean_;                    // by node: the mean of its first carriers, at rest [m]
   std::vector<double> reach_, rate_;          // by node
   std::vector<std::size_t> moving_;           // nodes whose shares are averaged
   std::vector<double> sum_;                   // by mesh vertex, zero between uses

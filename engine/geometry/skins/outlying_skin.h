@@ -17,14 +17,14 @@ struct Carrier {
   double share;         // none is negative, and those of a point sum to 1
 };
 
-// The element in which each point of the skin lies, or the one from which it is least far outside.
+// Names the element in which each point of the skin lies, or the one from which it is least far outside.
 struct Located {
   Tetrahedra corners;                                                 // n x 4
   Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> weights;  // barycentric, n x 4
   std::vector<char> inside;                                           // by point
 };
 
-// Returns the carriers of each skin vertex that lies outside, in the order of their vertices; none of one inside.
+// Returns the mesh vertices that carry each skin vertex, in increasing order; none where it follows its element alone.
 std::vector<std::vector<Carrier>> outside_carriers(const TriMesh& skin, const TetMesh& mesh, const Located& located);
 
 }  // namespace supple

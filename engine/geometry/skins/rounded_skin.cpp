@@ -118,9 +118,9 @@ class RoundingPass {
     return exact_->from_shape * onto_surface(exact_->shape, to_shape_ * straight, 0.5 * length * to_scale_);
   }
 
-  // Tells whether the ends of an edge lie on the shape, with normals that are alike, and that in the middle is about
-  // their mean. Across a sharp edge of the shape it is not, and there triangles cut the edge off: halved, they would
-  // make it a row of scallops.
+  // Tells whether the ends of an edge and its middle lie on the shape, with normals at the ends that are alike, and a
+  // normal in the middle that is about their mean. It is not across a sharp edge of the shape. Triangles cut off such
+  // an edge: halved, they would make it a row of scallops.
   bool turns_evenly(const Vec3& a, const Vec3& middle, const Vec3& b, double length) const {
     const auto lies_off = [&](const Vec3& place) {
       return std::abs(exact_->shape.distance(to_shape_ * place)) > 0.5 * roundness_.off * to_scale_;
@@ -134,7 +134,8 @@ class RoundingPass {
     return at_a.dot(at_b) > sharp && normal(middle).dot((at_a + at_b).normalized()) > evenly;
   }
 
-  // Returns the middle of the cubic curve whose control points next to the ends lie in the planes through these.
+  // Returns the middle of the cubic curve whose control points next to the ends lie in the planes through the ends that
+  // are perpendicular to the normals there.
   Vec3 on_curve(const Edge& edge, const Vec3& a, const Vec3& b) const {
     if (edge.crease || edge.triangles != 2) return 0.5 * (a + b);
     const Vec3 at_a = normals_.row(edge.from), at_b = normals_.row(edge.to);
@@ -212,7 +213,7 @@ class RoundingPass {
     }
   }
 
-  // The paint of a new vertex is that of its place, where this is known.
+  // Gives the last vertex the paint of its place, where the exact surface is known.
   void paint_exactly(const Vec3& place) {
     if (exact_ == nullptr) return;
     for (std::size_t layer = 0; layer < exact_->shape.paint.size(); ++layer)

@@ -21,10 +21,10 @@ struct ExactSurface {
 
 // Halves the edges of a skin at rest that are long and bent, up to three times over, and returns the two vertices
 // between which each new one lies. The skin's vertices keep their numbers, and new ones follow. A new vertex lies on
-// the exact surface, with the distances to its layers of paint. Without one it lies on the cubic curve through the ends
-// of the edge that is vertical to the normals there (Vlachos, Peters, Boyd and Mitchell 2001, "Curved PN triangles",
-// section 3.1), and edges at which the surface has two normals or ends stay straight. exact: null where it is not
-// known.
+// the exact surface, with the distances to its layers of paint. Without one it lies on the cubic curve that goes
+// through the ends of the edge and is perpendicular to the normals there (Vlachos, Peters, Boyd and Mitchell 2001,
+// "Curved PN triangles", section 3.1), and edges stay straight at which the surface has two normals or ends. exact:
+// null where it is not known.
 //
 // With an exact surface, edges across which the border of a layer bends by more than `off` are cut, too.
 std::vector<std::array<std::int32_t, 2>> round_off(Skin& skin, const Roundness& roundness, const ExactSurface* exact);

@@ -69,7 +69,7 @@ class GroupSimplifier {
     return true;
   }
 
-  // Tells whether one of the triangles that are left and close to a vertex has its colour there.
+  // Tells whether one of the triangles that are left and close to a vertex has the vertex's colour there.
   bool finds_color(std::int32_t vertex, std::size_t left, double error) const {
     const Vec3 place = skin_.rest.points.row(vertex);
     for (std::size_t i = 0; i < left; i += 3) {

@@ -21,18 +21,18 @@ struct Skin {
   std::vector<float> occlusion;  // share of the sky that the rest shape leaves open at each vertex, 0 to 1
   std::vector<std::array<float, max_paint_layers>> paint;  // signed distance to each colour layer, by vertex [m]
   std::vector<std::array<float, 2>> square;  // place in the printed pattern by vertex, in squares; empty without one
-  std::vector<FlatPlace> flat;               // of cloth, by vertex; empty: it is no cloth
-  std::vector<SurfaceColor> color;           // of the file, by vertex; empty where it has none
-  // Numbers by vertex, if there are colours: vertices with the same one were one before colours split it, and have one
-  // normal.
+  std::vector<FlatPlace> flat;               // place on the flat cloth by vertex; empty: it is no cloth
+  std::vector<SurfaceColor> color;           // colour in the file by vertex; empty where it has none
+  // A number for each vertex, if there are colours: vertices with one number were one vertex before colours split it,
+  // and have one normal.
   std::vector<std::int32_t> smooth;
-  std::vector<std::int32_t> vertex_of;  // of a collider that deforms: its solid's vertex by vertex; else empty
+  std::vector<std::int32_t> vertex_of;  // by vertex of a collider that deforms: the vertex of its solid; else empty
 };
 
 // Contours the shape with cells of the given size [m] (surface_nets.h) and moves the vertices onto the zero set.
 TriMesh contour(const Shape& shape, double cell);
 
-// Adds to the contour the distances to its layers and the ambient occlusion of the rest shape.
+// Makes the skin of a shape: its contour, with the distances to the shape's layers and the ambient occlusion at rest.
 Skin skin_of(const Shape& shape, double cell);
 
 // Makes a skin without layers from triangles over a mesh's vertices. A vertex on a crease of the surface is split into

@@ -17,7 +17,7 @@ struct SkinLimit {
     double length;          // at rest [m]
   };
   std::vector<Edge> edges;
-  std::vector<char> movable;                // by node: it lies outside
+  std::vector<char> movable;                // by node: whether it lies outside
   std::vector<std::int32_t> begin, copies;  // by node: its skin vertices
 
   // Returns the largest factor by which an edge is longer than at rest; 0 without edges.
@@ -32,7 +32,7 @@ struct SkinLimit {
   void apply(double factor, Positions& skin) const;
 };
 
-// Returns nothing where all of the skin lies in elements.
+// Returns the limit of a skin; nothing where all of it lies in elements.
 std::optional<SkinLimit> skin_limit(const TriMesh& skin, const Embedding& embedding);
 
 }  // namespace supple

@@ -12,8 +12,8 @@ class SkinMiddles {
  public:
   explicit SkinMiddles(Skin& skin);
 
-  // Appends all that the skin has of a vertex between a and b but its place. Vertices between the same two normals
-  // share theirs, as a and b do with their copies.
+  // Appends all that the skin has of a vertex between a and b, except its place. Vertices between the same two normals
+  // share one normal (Skin::smooth), as copies of a and of b do.
   void append(std::size_t a, std::size_t b);
 
  private:

@@ -8,7 +8,7 @@ namespace supple {
 // Returns the mean length of one edge of each element [m]; 0 without elements.
 double mean_edge(const TetMesh& mesh);
 
-// An edge of a skin, and by which factor it is longer than at rest.
+// Names an edge of a skin, and the factor by which it is longer than at rest.
 struct StretchedEdge {
   std::int32_t from = -1, to = -1;  // skin vertices
   double factor = 0;

@@ -40,7 +40,7 @@ class TrianglesByPlace {
     for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) triangles_.try_emplace(*places_of(mesh, t), t);
   }
 
-  // Returns the first triangle with these corners; -1 where there is none.
+  // Returns the first triangle with the corners of a triangle of another mesh; -1 where there is none.
   Eigen::Index find(const TriMesh& other, Eigen::Index triangle) const {
     const auto places = places_of(other, triangle);
     const auto found = places ? triangles_.find(*places) : triangles_.end();
@@ -109,7 +109,7 @@ class FileTriangles {
     return result;
   }
 
-  // Returns the places of a triangle's corners in the triangles of the file; that of the first one where none is near.
+  // Returns the places of a triangle's corners in a triangle of the file, which is the first one where none is near.
   std::array<RemeshedPlace, 3> places_of(const TriMesh& surface, Eigen::Index triangle) {
     Eigen::Index source = by_place_.find(surface, triangle);
     if (source < 0) source = std::max<Eigen::Index>(0, nearest_to(surface, triangle));
@@ -122,7 +122,7 @@ class FileTriangles {
     return places;
   }
 
-  // Returns the part of a triangle; the first one where no triangle is near.
+  // Returns the part of a triangle; the first part where no triangle of the file is near.
   std::int32_t part_of(const TriMesh& surface, Eigen::Index triangle) {
     Eigen::Index source = by_place_.find(surface, triangle);
     if (source < 0) source = nearest_to(surface, triangle);
@@ -159,7 +159,7 @@ class FileTriangles {
   std::vector<Eigen::Index> kept_;
 };
 
-// Returns the place of a pixel among `size` that a texture has where it goes on beyond its edges.
+// Returns which of the `size` pixels of a texture along an axis lies at i, which may be beyond the texture's edges.
 int beyond_edges(std::int64_t i, int size, Wrap rule) {
   if (rule == Wrap::clamp) return int(std::clamp<std::int64_t>(i, 0, size - 1));
   const std::int64_t period = rule == Wrap::mirror ? 2 * std::int64_t(size) : size;
@@ -192,7 +192,7 @@ std::uint64_t hash_of(const SurfaceColors& colors) {
   return hash;
 }
 
-// A surface whose vertices are split where colours meet. `place_of` names the vertices that were one.
+// Holds a surface whose vertices are split where colours meet. Vertices that were one have one number in `place_of`.
 struct SplitSurface {
   TriMesh mesh;
   std::vector<SurfaceColor> colors;    // by vertex
@@ -239,7 +239,8 @@ SplitSurface refined_split(const SplitSurface& coarse, Eigen::Index places, doub
   return result;
 }
 
-// Splits the vertices of a skin of the same triangles where those of a split surface are, and gives them its colours.
+// Splits the vertices of a skin as those of a split surface with the same triangles are split, and gives them the
+// colours of that surface.
 Skin split_as(const Skin& plain, const SplitSurface& colored_surface) {
   Skin skin;
   skin.rest.triangles.resize(plain.rest.triangles.rows(), 3);

@@ -26,7 +26,7 @@ struct SurfaceColors {
 // those of the nearest triangle.
 std::shared_ptr<const SurfaceColors> colors_on(const TriMesh& surface, const ColoredSurface& file);
 
-// The same for a surface whose corners are known to come from places in the file.
+// Returns the colours of a surface whose corners come from known places in the file; null where the file has none.
 std::shared_ptr<const SurfaceColors> colors_on(const FileCorners& corners, const ColoredSurface& file);
 
 // Returns the parts of a surface's triangles, which find theirs as colors_on finds colours; null where no part of the
@@ -41,7 +41,7 @@ std::shared_ptr<const TextureCorners> places_on(const TriMesh& surface, const Co
 Vec3 srgb_at(const SurfaceColors& colors, Eigen::Index triangle, const Vec3& weights);
 
 // Returns how bright the pixel of a picture is that lies at a place of it, 0 black to 1 white: the luma of BT.709, of
-// the sRGB numbers. Beyond its edges it repeats; both edges belong to it.
+// the sRGB numbers. The picture repeats beyond its edges, which both belong to it.
 double brightness_at(const Texture& picture, const Eigen::Vector2d& place);
 
 // Gives a skin that skin_of_surface has made of these triangles the colours of their corners. Vertices at which colours

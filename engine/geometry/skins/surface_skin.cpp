@@ -19,7 +19,7 @@ struct Corner {
 // for each corner.
 std::vector<int> groups_of(const std::vector<Corner>& corners, const Triangles& triangles, const Positions& normals) {
   DisjointSets groups(corners.size());
-  std::map<std::int32_t, std::vector<int>> by_neighbour;  // from the edge's other end to its corners
+  std::map<std::int32_t, std::vector<int>> by_neighbour;  // by the other end of an edge: the corners at the edge
   for (std::size_t i = 0; i < corners.size(); ++i) {
     for (int step = 1; step <= 2; ++step)
       by_neighbour[triangles(corners[i].face, (corners[i].place + step) % 3)].push_back(static_cast<int>(i));

@@ -109,8 +109,8 @@ bool encloses(const Bounds& outer, const Bounds& inner) {
   return (outer.lower.array() <= inner.lower.array()).all() && (outer.upper.array() >= inner.upper.array()).all();
 }
 
-// Tells whether every corner of `inner` lies within `outer`, by the winding number. The solid is built when it is first
-// needed.
+// Tells whether every corner of `inner` lies within `outer`, by the winding number. The solid of `outer` is built when
+// it is first needed.
 bool encloses(const TriMesh& mesh, const Component& outer, const Component& inner,
               std::vector<TriangleSolid>& solid_of_outer) {
   if (!encloses(outer.box, inner.box)) return false;

@@ -1,5 +1,5 @@
-// Makes the solid of a surface whose vertices have moved. Its search tree has the parts of the tree that it was made
-// from, with new boxes: a deformation keeps neighbours together, so that they stay small.
+// Makes the solid of a surface whose vertices have moved. The search tree keeps its parts, and gets new boxes: a
+// deformation keeps neighbours together, so that the boxes stay small.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
@@ -9,7 +9,7 @@
 
 namespace supple {
 
-// Describes what a node of the tree holds, as TriangleTree does.
+// Describes what a node of the tree holds, as TriangleTree::Node does.
 struct TriangleSolid::Extent {
   Bounds box;
   Vec3 center = Vec3::Zero(), area = Vec3::Zero();
@@ -34,7 +34,8 @@ TriangleSolid::Extent TriangleSolid::extent_of(const Leaf& leaf) const {
   return extent;
 }
 
-// Children have higher numbers than their node, so that they are known before it.
+// Computes leaves, boxes and dipoles from the places of the vertices. Children have higher numbers than their node, so
+// that what they hold is known before it.
 void TriangleSolid::refit() {
   for (Leaf& leaf : leaves_) leaf = leaf_of({leaf.triangle.data(), std::size_t(leaf.count)});
   std::vector<Extent> extents(nodes_.size());

@@ -17,7 +17,8 @@ double radical_inverse(int i, int base) {
   return result;
 }
 
-// A direction around the normal, with a density that falls as the cosine to it.
+// Returns a direction on the normal's side, with a density proportional to the cosine of its angle to the normal. u, v:
+// numbers that are spread evenly over 0 to 1.
 Vec3 direction_around(const Vec3& normal, double u, double v) {
   const Vec3 side = normal.unitOrthogonal();
   const double radius = std::sqrt(u), angle = 2 * std::numbers::pi * v;

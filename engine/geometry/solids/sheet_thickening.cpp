@@ -23,8 +23,7 @@ std::vector<std::array<Eigen::Index, 3>> continuations(const Neighbours& next, c
   return result;
 }
 
-// Names the corners, three for each triangle, so that only those have one name that edges connect around a
-// vertex.
+// Names the corners, three for each triangle: those around a vertex that edges connect have one name, and no others do.
 CornerNames corner_names(const Triangles& triangles, const std::vector<std::array<Eigen::Index, 3>>& next,
                          std::int32_t& count) {
   DisjointSets corners(at(3 * triangles.rows()));
@@ -49,7 +48,7 @@ CornerNames corner_names(const Triangles& triangles, const std::vector<std::arra
   return result;
 }
 
-// The normals of the corners' vertices, weighted by the triangles' angles there, as long as the triangles' own.
+// Returns a unit normal for each name: that of the sum of the triangles' normals, weighted by their angles there.
 Positions offsets_of(const TriMesh& mesh, const CornerNames& name, std::int32_t count) {
   Positions sum = Positions::Zero(count, 3);
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {

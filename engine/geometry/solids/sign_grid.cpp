@@ -44,7 +44,7 @@ void mark_near(const TriangleSoup& soup, const SignGrid& grid, Blocks& blocks) {
   }
 }
 
-// Asks about all points of a block at once.
+// Finds which points of a block are inside, all at once.
 void sample_block(const TriangleSoup& soup, const Eigen::Vector3i& low, const Eigen::Vector3i& high, SignGrid& grid) {
   std::vector<Vec3> places;
   std::vector<double> windings;
@@ -61,8 +61,8 @@ void sample_block(const TriangleSoup& soup, const Eigen::Vector3i& low, const Ei
   for (std::size_t n = 0; n < points.size(); ++n) grid.inside[points[n]] = windings[n] > 0.5;
 }
 
-// Fills one layer of blocks. Where no triangle is near, the winding number is smooth: it changes side in a block only
-// when it does so among its corners, or comes close to 1/2 there.
+// Fills one layer of blocks. Where no triangle is near, the winding number is smooth: it passes 1/2 within a block only
+// where it does so from corner to corner of the block, or comes close to 1/2 at a corner.
 void fill_layer(const TriangleSoup& soup, const Blocks& blocks, int bk, SignGrid& grid) {
   constexpr float margin = 0.1f;
   for (int bj = 0; bj < blocks.count.y(); ++bj) {
@@ -89,7 +89,8 @@ void fill_layer(const TriangleSoup& soup, const Blocks& blocks, int bk, SignGrid
   }
 }
 
-// Round-off alone could put a point beside the triangles' box inside; the boundary needs a layer of empty cells.
+// Puts the two outermost layers of points outside, because the boundary is closed only then (surface_nets.h). Round-off
+// alone could put a point inside that lies beside the triangles' box.
 void clear_border(SignGrid& grid) {
   const Eigen::Vector3i last = grid.points.array() - 1;
   for (int k = 0; k <= last.z(); ++k) {

@@ -15,12 +15,13 @@ struct SignGrid : PointGrid {
 // Returns an edge of the cells that puts some 40,000 of them on the triangles' area, within bounds for the whole grid.
 double suitable_cell(const TriMesh& mesh);
 
-// Samples every point near a triangle, and elsewhere those between which the side changes. At least two layers around
-// are outside.
+// Returns the points of a grid, each with its side. Every point near a triangle is sampled, and elsewhere only blocks
+// of points in which the side may change. At least the two outermost layers are outside.
 SignGrid sampled_signs(const TriangleSoup& soup, double cell, Threads& threads);
 
-// Adds points to the inside until its boundary is a manifold: no two of them touch along a grid's diagonal alone. Such
-// sets are called well-composed: Latecki, 3D well-composed pictures, Graphical Models and Image Processing 59, 1997.
+// Adds points to the inside until its boundary is a manifold: no two points of the inside touch along a diagonal of the
+// grid alone. Such sets are called well-composed: Latecki, 3D well-composed pictures, Graphical Models and Image
+// Processing 59, 1997.
 void make_well_composed(SignGrid& grid);
 
 // Returns the boundary of the inside as a closed manifold surface that faces outward, with one vertex in the middle of

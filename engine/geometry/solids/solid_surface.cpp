@@ -28,7 +28,7 @@ std::optional<TriMesh> if_closed(const Numbered& surface, const std::string& nam
   }
 }
 
-// Returns nothing, and why, where caps do not make a closed surface.
+// Closes holes with caps. Returns nothing, and why, where caps do not make a closed surface.
 std::optional<TriMesh> if_capped(const Numbered& surface, const std::string& name, Notes& notes, std::string& reason) {
   const Capped capped = with_caps(surface);
   reason = capped.refusal;
@@ -40,7 +40,8 @@ std::optional<TriMesh> if_capped(const Numbered& surface, const std::string& nam
   return result;
 }
 
-// The sign of a distance to a surface with many open edges costs a sum over them all. Caps spare that.
+// Tells whether caps are worth while although the surface counts as closed: with many open edges, the sign of each
+// distance costs a sum over them all.
 bool has_many_open_edges(const Numbered& surface) {
   constexpr Eigen::Index many = 32;
   Eigen::Index open = 0;
@@ -125,7 +126,8 @@ void turn_and_scale(Positions& points, const SurfaceOptions& options) {
   if (options.unit != LengthUnit::metre) points *= metres(options.unit);
 }
 
-// turned: the triangles after turn_and_scale().
+// Returns how the options move and scale triangles by the box around them. turned: the triangles after
+// turn_and_scale().
 SetUp placed_by_box(const TriMesh& turned, const SurfaceOptions& options) {
   SetUp result{options};
   if (options.size == 0 && !options.center) return result;

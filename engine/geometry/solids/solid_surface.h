@@ -53,7 +53,8 @@ struct SurfaceOptions {
   std::string text() const;
 };
 
-// Says how the options turn, scale and move the triangles of one file, for other places of the same file.
+// Says how the options turn, scale and move the triangles of one file, so that other places of the file can follow
+// them.
 struct SetUp {
   SurfaceOptions options;
   Eigen::RowVector3d shift = Eigen::RowVector3d::Zero();  // in metres, after the turn and before `factor`
@@ -73,9 +74,9 @@ struct SolidSurface {
   const TriMesh& skin() const { return drawn.triangles.rows() > 0 ? drawn : boundary; }
 };
 
-// Makes a solid of triangles that have been set up. Adds one line to `notes` for each thing that was done. Throws
-// InputError where the options refuse the surface, where numbers are no good, and where no volume is enclosed; it names
-// the option that helps.
+// Makes a solid of triangles that have been set up. Adds one line to `notes`, which may be null, for each thing that
+// was done. Throws InputError where the options refuse the surface, where numbers are no good, and where no volume is
+// enclosed; the message names the option that helps.
 SolidSurface solid_surface(const TriMesh& triangles, const SurfaceOptions& options, const std::string& name,
                            std::vector<std::string>* notes);
 

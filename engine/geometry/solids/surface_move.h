@@ -14,8 +14,9 @@ class TriangleSolid;
 
 class SurfaceMove {
  public:
-  // Both solids must have the same triangles. reach: how far from the surface places are carried along wholly, at least
-  // [m]. At twice that distance and beyond, they stay where they are: no part of the surface can come so far in a step.
+  // Both solids must have the same triangles. Places nearer to the surface than `reach` [m], or than eight times the
+  // longest way of a vertex if that is more, are carried along wholly. At twice that distance and beyond, places stay
+  // where they are: no part of the surface can come so far in a step.
   SurfaceMove(std::shared_ptr<const TriangleSolid> start, std::shared_ptr<const TriangleSolid> end, double reach);
 
   bool moves() const { return most_ > 0; }

@@ -21,7 +21,7 @@ struct Part {
   std::vector<TriangleSoup> soup;  // one, once it has been needed
 };
 
-// Takes triangles out of a mesh. `name` has a -1 for each of its vertices, before and after.
+// Returns some triangles of a mesh, with their own vertices. name: -1 for each vertex of the mesh, before and after.
 TriMesh own_mesh(const TriMesh& mesh, const std::vector<Eigen::Index>& triangles, std::vector<std::int32_t>& name) {
   std::vector<std::int32_t> used;
   TriMesh part{Positions(), mesh.triangles(triangles, Eigen::all)};
@@ -37,7 +37,8 @@ TriMesh own_mesh(const TriMesh& mesh, const std::vector<Eigen::Index>& triangles
   return part;
 }
 
-// Parts share vertices, not only edges: what a clean-up joined in one point stays together.
+// Returns the parts of a mesh. Triangles that share a vertex are in one part, also where they share no edge: what a
+// clean-up joined in one point stays together.
 std::vector<Part> parts_of(const TriMesh& mesh) {
   DisjointSets joined(at(mesh.points.rows()));
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
@@ -77,7 +78,7 @@ bool crosses(const TriangleSoup& other, const Vec3& a, const Vec3& b) {
   return hit && *hit <= length;
 }
 
-// Looks from the vertices and edges of one part at the other.
+// Returns how two parts are linked, as the vertices and edges of the first one show.
 Link link_from(Part& from, Part& to, double gap) {
   const TriangleSoup& other = soup_of(to);
   Link link = Link::none;
@@ -123,8 +124,8 @@ void share_out(const TriMesh& drawn, std::vector<SolidSurface>& pieces) {
   for (std::size_t p = 0; p < pieces.size(); ++p) pieces[p].drawn = own_mesh(drawn, owned[p], name);
 }
 
-// Returns the volume of a piece's solid. More than one of its parts may hold the same place; where none does, the sum
-// of the parts is exact.
+// Returns the volume of a piece's solid. Where no two of its parts may hold the same place, the sum of the parts is
+// exact.
 double solid_volume(const TriMesh& mesh, const std::vector<const Part*>& parts) {
   const double sum = enclosed_volume(mesh);
   bool may_overlap = false;
@@ -132,7 +133,7 @@ double solid_volume(const TriMesh& mesh, const std::vector<const Part*>& parts) 
     for (std::size_t b = a + 1; b < parts.size() && !may_overlap; ++b)
       may_overlap = parts[a]->volume > 0 && parts[b]->volume > 0 && boxes_meet(parts[a]->box, parts[b]->box, 0);
   if (!may_overlap) return sum;
-  constexpr double error = 0.005;  // of columns, and more than that
+  constexpr double error = 0.005;  // more than that of united_volume(), as a share
   const double united = united_volume(mesh);
   return std::abs(united - sum) < error * sum ? sum : united;
 }

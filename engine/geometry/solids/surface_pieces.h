@@ -26,9 +26,9 @@ std::vector<TriMesh> closed_parts(const TriMesh& boundary);
 // Returns the volume that a closed surface encloses; it is negative where the surface faces inward [m^3].
 double enclosed_volume(const TriMesh& boundary);
 
-// Returns the volume where the winding number is positive, so that what is inside twice counts once, by columns through
-// the surface, some 250 across: exact along a column, so that errors are some thousandths [m^3]. boundary: closed,
-// facing outward, cavities facing into themselves.
+// Returns the volume where the winding number is positive, so that what is inside twice counts once [m^3]. It is summed
+// up over columns through the surface, some 250 across. Each column is measured exactly, so that errors are some
+// thousandths. boundary: closed, facing outward, cavities facing into themselves.
 double united_volume(const TriMesh& boundary);
 
 }  // namespace supple

@@ -30,9 +30,10 @@ template <class Node>
 
 }  // namespace
 
-// Follows Ericson, Real-Time Collision Detection, 2005, section 5.1.5, for four triangles at once. Instead of choosing
-// a region first, it tries all three edges and, where it lies within, the foot on the plane: every candidate is a point
-// of the triangle, so that round-off in a sliver's plane can't make it look nearer than it is.
+// Replaces `best` by the closest point of a leaf's triangles, if that is nearer. Follows Ericson, Real-Time Collision
+// Detection, 2005, section 5.1.5, for four triangles at once. Instead of choosing a region first, it tries the closest
+// points of all three edges, and the foot on the plane where the foot lies within the triangle: every candidate is a
+// point of the triangle, so that round-off in a sliver's plane can't make it look nearer than it is.
 void TriangleSolid::nearest_in_leaf(const Vec3& p, std::int32_t index, Nearest& best) const {
   const Leaf& leaf = leaves_[std::size_t(index)];
   const Lanes ap_x = p.x() - leaf.a.x, ap_y = p.y() - leaf.a.y, ap_z = p.z() - leaf.a.z;
@@ -78,10 +79,10 @@ void TriangleSolid::nearest_in_leaf(const Vec3& p, std::int32_t index, Nearest& 
   }
 }
 
-// Searches by branch and bound, the nearer child first. A leaf that is likely to be near saves most of the search. Of
-// triangles that are equally near, the first one is taken, and boxes are left out only where they are further by more
-// than round-off, so that the answer does not depend on where the search begins. most: the distance below which
-// triangles are found.
+// Searches by branch and bound, the nearer child first. likely: a leaf that is probably near, which saves most of the
+// search; -1: none. Of triangles that are equally near, the first one is taken, and boxes are left out only where they
+// are further by more than round-off, so that the answer does not depend on where the search begins. most: the distance
+// below which triangles are found [m].
 TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p, std::int32_t likely, double most) const {
   struct Entry {
     double squared;

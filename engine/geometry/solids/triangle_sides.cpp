@@ -38,8 +38,8 @@ bool any_near(const std::vector<Node>& nodes, const std::vector<Leaf>& leaves, c
   return false;
 }
 
-// Computes the signed solid angle over 4 pi: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983,
-// equation 8.
+// Computes the signed solid angle of a triangle, as seen from the origin, over 4 pi: Van Oosterom and Strackee, The
+// solid angle of a plane triangle, 1983, equation 8.
 double winding_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
   const double y = a.dot(b.cross(c));
@@ -63,7 +63,7 @@ bool passes_through(const Vec3& a, const Vec3& way, const Corners& corners) {
 }  // namespace
 
 double TriangleSolid::winding_number(const Vec3& p) const {
-  // A part counts as far beyond twice its radius, as in section 3.2 of the same paper.
+  // A part counts as far beyond twice its radius, as in section 3.2 of Barill et al. 2018 (triangle_tree.h).
   constexpr double far = 2;
   // At this distance the result is below round-off, and further away squares would overflow.
   if ((p - bounds_.center()).cwiseAbs().maxCoeff() > 1e12 * (bounds_.diagonal() + on_surface_)) return 0;
@@ -177,8 +177,8 @@ bool TriangleSolid::find_neighbours() {
   return true;
 }
 
-// Tells whether the edge between two vertices passes through a triangle that has neither of them. The triangles' own
-// edges end there, so that touching does not count.
+// Tells whether the edge between two vertices passes through a triangle that has neither of them. An edge that only
+// touches a triangle does not.
 bool TriangleSolid::pierced_by(std::int32_t from, std::int32_t to) const {
   const Vec3 a = surface_.points.row(from), b = surface_.points.row(to), way = b - a;
   return any_near(nodes_, leaves_, a.cwiseMin(b), a.cwiseMax(b), [&](std::int32_t triangle) {
@@ -188,9 +188,10 @@ bool TriangleSolid::pierced_by(std::int32_t from, std::int32_t to) const {
   });
 }
 
-// Where two triangles cross each other, an edge of one of them passes through the other.
+// Tells whether the surface crosses itself. Where two triangles cross each other, an edge of one of them passes through
+// the other.
 bool TriangleSolid::crosses_itself() const {
-  constexpr Eigen::Index chunk = 4096;  // each stops at its first edge that does
+  constexpr Eigen::Index chunk = 4096;  // each stops at its first triangle with an edge that passes through another one
   const auto chunks = std::size_t((surface_.triangles.rows() + chunk - 1) / chunk);
   std::vector<char> crossed(chunks, 0);
   Threads threads(chunks > 1 ? int(std::max(1u, std::thread::hardware_concurrency())) : 1);
@@ -272,8 +273,9 @@ double TriangleSolid::side_of(const Vec3& p, const Nearest& found) const {
   return normal.dot(p - point_of(found)) < 0 ? -1 : 1;
 }
 
-// Follows Moeller and Trumbore, Fast, minimum storage ray-triangle intersection, 1997, for four triangles at once. Only
-// triangles that face the way count; a way that slips between two of them by round-off meets both.
+// Lowers `first` to the share of a way at which it enters through a triangle of a leaf, if that is less. Follows
+// Moeller and Trumbore, Fast, minimum storage ray-triangle intersection, 1997, for four triangles at once. Only
+// triangles that face the way count; a way that could slip between two of them by round-off meets both.
 void TriangleSolid::entry_in_leaf(const Vec3& a, const Vec3& way, std::int32_t index, double& first) const {
   constexpr double slack = 1e-9;
   const Leaf& leaf = leaves_[std::size_t(index)];

@@ -125,7 +125,8 @@ void TriangleSolid::find_normals() {
   }
 }
 
-// Any single apex will do: open edges form closed lines, so that the other sides of these triangles cancel.
+// Closes holes by triangles from the open edges to one apex. Any apex will do: open edges form closed lines, so that
+// the other sides of these triangles cancel.
 void TriangleSolid::close_holes() {
   lids_.clear();
   const auto open = open_edges(surface_.triangles);

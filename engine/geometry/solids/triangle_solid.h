@@ -1,8 +1,8 @@
 // Represents the solid inside a closed triangle surface and finds closest points and signed distances, for collisions
-// and as a shape. Files, and the checks that make a surface closed, are in surface_file.h; small holes are tolerated.
-// The sign is that of the generalised winding number (Jacobson, Kavan, Sorkine-Hornung, Robust inside-outside
-// segmentation using generalized winding numbers, 2013): a point is inside where it exceeds 1/2, so that overlapping
-// parts form a union.
+// and as a shape. Files are read by files/surface_file.h, and closed_surface.h checks that a surface is closed; small
+// holes are tolerated. The sign is that of the generalised winding number (Jacobson, Kavan, Sorkine-Hornung, Robust
+// inside-outside segmentation using generalized winding numbers, 2013): a point is inside where it exceeds 1/2, so that
+// overlapping parts form a union.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ struct QueryMemory {
   std::int32_t leaf = -1;  // of the solid's tree, where the last search ended; -1: there was none
   std::array<Answer, 2> answers;
   std::int32_t count = 0;   // of the answers
-  std::int32_t oldest = 0;  // of the two, which the next one replaces
+  std::int32_t oldest = 0;  // of the answers; the next one replaces it
 };
 
 // Names the point a + v ab + w ac of a triangle.
@@ -39,7 +39,7 @@ struct SurfacePlace {
   double v, w;
 };
 
-// Names leaves of a solid's tree, among which the closest triangle lies for all places near each other.
+// Names leaves of a solid's tree. For all places near a point, one of these leaves has the closest triangle.
 struct NearLeaves {
   std::array<std::int32_t, 12> leaf;
   int count = 0;
@@ -56,7 +56,8 @@ class TriangleSolid {
   // up to round-off. usual_half_thickness() stays what it is here.
   std::shared_ptr<const TriangleSolid> moved(Positions points) const;
 
-  // Accepts any finite point. The distance is exact up to round-off of the surface's coordinates.
+  // Returns the closest point of the surface, for any finite point. The distance is exact up to round-off of the
+  // surface's coordinates.
   SurfacePoint closest(const Vec3& p) const;
 
   // Returns the place of the surface that is closest to p.
@@ -66,11 +67,11 @@ class TriangleSolid {
   // surface's normals where that is safe, and otherwise as above.
   SurfacePoint closest(const Vec3& p, QueryMemory& near) const;
 
-  // Does the same, but returns nothing where the surface is certainly further away than `most`.
+  // Does the same, but may return nothing where the surface is not nearer than `most` [m].
   std::optional<SurfacePoint> closest_within(const Vec3& p, double most, QueryMemory& near) const;
 
-  // Returns a bound below the distance of p that follows from the answers before it, less a ten-millionth of the
-  // solid's size; minus infinity where nothing follows.
+  // Returns a bound below the distance of p that follows from earlier answers, less a ten-millionth of the solid's
+  // size; minus infinity where nothing follows [m].
   double certain_distance(const Vec3& p, const QueryMemory& near) const;
 
   // Finds all leaves that come nearer to p than `reach`. Returns false, and finds none, where there are too many.
@@ -87,7 +88,8 @@ class TriangleSolid {
   // does not.
   std::optional<double> entry(const Vec3& a, const Vec3& b) const;
 
-  // Sums near parts exactly and far ones as dipoles; the result is accurate to about 0.1.
+  // Returns the generalised winding number. Near parts are summed exactly and far ones as dipoles; the result is
+  // accurate to about 0.1.
   double winding_number(const Vec3& p) const;
 
   // Returns half the thickness that all but the thinnest twentieth of the solid has, 0 for a surface with holes [m].
@@ -119,7 +121,7 @@ class TriangleSolid {
     Lanes3 a, ab, ac;                          // a corner, and the edges from it [m]
     Lanes inverse_ab, inverse_ac, inverse_bc;  // 1 / squared length [1/m^2]
     Lanes bc_start;                            // bc . ab [m^2]
-    Lanes3 to_v, to_w;                         // v and w of a point's foot on the plane, by their dot product [1/m]
+    Lanes3 to_v, to_w;                         // their dot products with p - a: v and w of p's foot on the plane [1/m]
     std::array<std::int32_t, width> triangle;  // a short leaf repeats its first triangle
     int count;
   };

@@ -36,7 +36,7 @@ Rings rings_of(const TriMesh& mesh) {
   return rings;
 }
 
-// Moves the flagged vertices into the middle of their neighbours, some rounds long.
+// Moves the flagged vertices half way to the middle of their neighbours, `rounds` times.
 Positions smoothed(Positions points, const Rings& rings, const std::vector<char>& moves, int rounds) {
   Positions before;
   for (int round = 0; round < rounds; ++round) {
@@ -62,7 +62,8 @@ Positions vertex_normals(const Positions& points, const Triangles& triangles) {
   return normals;
 }
 
-// Tells which vertices were moved so that a triangle of theirs turned over.
+// Flags the vertices of triangles that turned over, or nearly, when vertices were moved away from `plain`. Tells
+// whether one of them had no flag yet.
 bool free_those_of_turned_triangles(const Positions& plain, TriMesh& boundary, std::vector<char>& free) {
   const TriMesh before{plain, boundary.triangles};
   bool any = false;
@@ -107,7 +108,8 @@ std::vector<char> move_onto(const TriangleSoup& soup, double cell, TriMesh& boun
   return in_hole;
 }
 
-// Vertices at the same place stay apart: merging them could join what only touches.
+// Returns a mesh without the vertices that no triangle names. Vertices at the same place stay apart: merging them could
+// join what only touches.
 TriMesh without_unused_vertices(const TriMesh& mesh) {
   VertexNames name(at(mesh.points.rows()), -1), used;
   TriMesh result{Positions(), mesh.triangles};
@@ -164,7 +166,8 @@ void add_samples(const TriangleSoup& soup, Eigen::Index t, double cell, std::vec
   }
 }
 
-// Takes the winding numbers at a triangle's samples from the first to the last.
+// Returns what is on a triangle's two sides. windings: the winding numbers at its samples, those in front and behind in
+// turns.
 Side side_of(std::span<const double> windings) {
   int votes[4] = {0, 0, 0, 0};
   for (std::size_t i = 0; i < windings.size(); i += 2) {
@@ -286,7 +289,7 @@ WindingSolid winding_solid(const Numbered& surface, const std::string& name, Thr
       "encloses no volume: thicken = 0.01 makes a solid of that thickness [m] around its sheets; a body that is cloth "
       "takes them as they are: cloth = {{ surface = \"{}\" }}",
       name);
-  constexpr double shortness = 1.0 / 48;  // of the edges for the winding number, by the box's diagonal
+  constexpr double shortness = 1.0 / 48;  // longest edge for the winding number, over the box's diagonal
   const TriangleSoup field(with_short_edges(oriented.mesh, shortness * bounds_of(oriented.mesh.points).diagonal()));
   const std::vector<Side> sides = sides_of(soup, field, result, threads);
   if (result.loose > most_loose) throw InputError(name, thin);

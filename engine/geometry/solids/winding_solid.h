@@ -12,13 +12,13 @@ struct WindingSolid {
   TriMesh boundary;         // closed, a manifold, facing outward
   TriMesh drawn;            // the triangles that can be seen, and what closes their holes
   double cell = 0;          // edge of the grid's cells, below which the boundary has no detail [m]
-  Eigen::Index turned = 0;  // triangles that face the other way than in the file
+  Eigen::Index turned = 0;  // how many triangles face the other way than in the file
   double hidden = 0;        // share of the triangles' area that lies inside and is not drawn
   double loose = 0;         // share of the triangles' area that bounds nothing: sheets with the outside on both sides
   double patched = 0;       // share of the boundary's area that closes holes
 };
 
-// Throws InputError when there is no inside to speak of.
+// Makes the solid of a cleaned surface. Throws InputError, with this name, when there is no inside to speak of.
 WindingSolid winding_solid(const Numbered& surface, const std::string& name, Threads& threads);
 
 // Orients the parts of a surface that hang together by edges of two triangles: each as most of it faces in the file,

@@ -53,8 +53,8 @@ class LatticeBuilder {
     }
   }
 
-  // Four elements around the diagonal of a square between two equal cells become the four around the edge that joins
-  // the middles of these cells: that is the body-centred cubic lattice, whose elements are rounder.
+  // Replaces the four elements around the diagonal of a square between two equal cells by the four around the edge that
+  // joins the middles of these cells. These are elements of the body-centred cubic lattice, which are rounder.
   void turn_diagonals() {
     std::unordered_map<std::uint64_t, std::vector<std::size_t>> around;
     for (std::size_t t = 0; t < tets_.size(); ++t)

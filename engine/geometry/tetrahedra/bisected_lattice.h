@@ -21,10 +21,10 @@ struct BisectedLattice {
 // Asks about a part of space: its middle, and a length, in the units of sites.
 using LatticeQuestion = std::function<bool(const Vec3& middle, double length)>;
 
-// cells: the number of cubic cells along each axis. halvings: how often the spacing of a cell, 2^(halvings + 1) units,
-// may be halved. is_needed: whether anything of a cell may belong to the body, by its middle and half diagonal.
-// is_too_large: whether an element there may not have this spacing; not asked about the smallest. The elements of a
-// cell have a twelfth of its volume, and elements of the same volume have the same spacing.
+// Makes the lattice. cells: the number of cubic cells along each axis. halvings: how often the spacing of a cell,
+// 2^(halvings + 1) units, may be halved. is_needed: whether anything of a cell may belong to the body, by its middle
+// and half diagonal. is_too_large: whether an element there may not have this spacing; not asked about the smallest.
+// The elements of a cell have a twelfth of its volume, and elements of the same volume have the same spacing.
 BisectedLattice bisected_lattice(const Eigen::Vector3i& cells, int halvings, const LatticeQuestion& is_needed,
                                  const LatticeQuestion& is_too_large);
 

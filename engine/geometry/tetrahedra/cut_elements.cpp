@@ -37,7 +37,8 @@ std::vector<FaceList> fans_of(const Triangles& faces, FaceList open) {
   return fans;
 }
 
-// Finds edges with four faces: such an edge joins two fans into one that visits a neighbour more than twice.
+// Tells whether an edge of the fan has four faces: such an edge joins two fans into one that visits a neighbour more
+// than twice.
 bool visits_an_edge_too_often(const Triangles& faces, const FaceList& fan, std::int32_t vertex) {
   std::vector<std::int32_t> neighbours;
   for (const Eigen::Index f : fan) {
@@ -71,7 +72,7 @@ FaceList touching_faces(const TetMesh& mesh, const Triangles& faces) {
   return touching;
 }
 
-// Clears the flag of each face's element. Returns false when there is no such face.
+// Clears the flag of the element of each touching face. Returns false when there is no such face.
 bool drop_elements_of(const TetMesh& mesh, const Triangles& faces, const FaceList& touching, std::vector<char>& keep) {
   if (touching.empty()) return false;
   std::vector<FaceList> tets_at(mesh.rest.rows());
@@ -121,7 +122,7 @@ TetMesh oriented_mesh(const std::vector<Eigen::RowVector3d>& vertices, const std
 }
 
 TetMesh one_manifold_piece(TetMesh mesh) {
-  constexpr int most_rounds = 20;  // removing elements can open the next touch; a few rounds have always been enough
+  constexpr int most_rounds = 20;  // what is left may touch itself elsewhere; a few rounds suffice
   for (int round = 0; round < most_rounds && mesh.tets.rows() > 0; ++round) {
     mesh = largest_piece(mesh);
     const Triangles faces = boundary_faces(mesh.tets);

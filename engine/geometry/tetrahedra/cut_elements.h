@@ -10,13 +10,13 @@
 
 namespace supple {
 
-// The corners of a lattice's element by the sign of the distance there.
+// Sorts the corners of a lattice's element by the sign of the distance there.
 template <class Site>
 struct CornersBySide {
   std::array<Site, 4> in{}, out{}, on{};
   std::size_t ins = 0, outs = 0, ons = 0;
 
-  // field: the distance at a site, 0 where it was moved onto the surface.
+  // field: returns the distance at a site, 0 where the site was moved onto the surface.
   template <class Field>
   CornersBySide(const std::array<Site, 4>& corners, const Field& field) {
     for (const Site& s : corners) {
@@ -34,8 +34,8 @@ struct CornersBySide {
 // Makes a mesh without tags, and turns its elements so that their volumes are positive.
 TetMesh oriented_mesh(const std::vector<Eigen::RowVector3d>& vertices, const std::vector<std::array<int, 4>>& tets);
 
-// Returns the largest face-connected piece, without the elements at which its boundary is not a manifold (the smaller
-// side of each place where it touches itself).
+// Returns the largest face-connected piece, without the elements at which its boundary is not a manifold (those on the
+// smaller side of each place where the boundary touches itself).
 TetMesh one_manifold_piece(TetMesh mesh);
 
 }  // namespace supple

@@ -12,7 +12,7 @@ namespace {
 struct ByKey {
   std::vector<std::int32_t> begin, list;
 
-  // key_of(i): of each number i from 0 to count - 1.
+  // key_of: returns the key of a number from 0 to count - 1.
   template <class KeyOf>
   ByKey(std::size_t keys, std::int32_t count, const KeyOf& key_of) : begin(keys + 1, 0), list(std::size_t(count)) {
     for (std::int32_t i = 0; i < count; ++i) ++begin[std::size_t(key_of(i)) + 1];
@@ -30,7 +30,7 @@ Face sorted(std::int32_t a, std::int32_t b, std::int32_t c) {
   return face;
 }
 
-// face: four times the element, plus the corner opposite.
+// Returns the corners of a face, sorted. face: four times the element, plus the corner opposite.
 Face face_of(const Tetrahedra& tets, std::int32_t face) {
   const Eigen::Index e = face / 4;
   const int k = face % 4;
@@ -108,8 +108,9 @@ void ElementPaths::list_around(Eigen::Index vertices) {
   }
 }
 
-// The shares of the line's end in an element fall below zero for the corners opposite to the faces through which it may
-// leave; it leaves through the face whose share is zero first.
+// Follows the line from element to element. In an element, the barycentric shares of the line's end are below zero for
+// the corners opposite to the faces through which the line may leave; it leaves through that face whose share is zero
+// first on the way.
 std::optional<std::int32_t> ElementPaths::element_at_end(const Positions& x, std::int32_t triangle, const Vec3& from,
                                                          const Vec3& to) const {
   constexpr int most_elements = 1000;    // of a line; round-off could make it run in circles

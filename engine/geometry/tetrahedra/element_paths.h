@@ -1,7 +1,7 @@
 // Follows straight lines from a place of a solid's surface through its elements, as it is deformed. A point of the
 // surface that lies inside another part of the same solid is found so: the line from the closest place of the surface
-// leads to it through elements that are not the point's own. That the way out lies within the body is what makes it a
-// way out: Chen, Diaz, Yuksel, Shortest path to boundary for self-intersecting meshes, 2023, section 4.
+// leads to it through elements that are not the point's own. Such a line lies within the body, and so is a way out for
+// the point: Chen, Diaz, Yuksel, Shortest path to boundary for self-intersecting meshes, 2023, section 4.
 #pragma once
 
 #include <array>
@@ -12,12 +12,12 @@
 
 namespace supple {
 
-// The first path that is asked for finds out which elements lie beyond which faces, so that a body that never comes near
-// itself does not pay for that. Two threads may not ask for paths at once.
+// The first path that is asked for finds out which elements lie beyond which faces, so that a body that never comes
+// near itself does not pay for that. Two threads may not ask for paths at once.
 class ElementPaths {
  public:
-  // tets: of a solid whose vertices are at `rest`, n x 3 [m]. triangles: its boundary, by vertices of the solid, in any
-  // order; those that are no face of an element belong to none.
+  // tets: the elements of a solid whose vertices are at `rest`, n x 3 [m]. triangles: its boundary, by vertices of the
+  // solid, in any order; those that are no face of an element belong to none.
   ElementPaths(Tetrahedra tets, Triangles triangles, const Positions& rest);
 
   // Returns the element that contains the end of a straight line which begins at a triangle of the boundary and leads
@@ -51,8 +51,8 @@ class ElementPaths {
       beyond_;  // by element: the one behind the face opposite a corner; -1: none
   mutable std::vector<std::array<std::int32_t, 2>>
       face_;                                             // by triangle: its element, and the corner opposite; -1: none
-  std::vector<std::int32_t> begin_, neighbours_;         // by vertex, ascending
-  std::vector<std::int32_t> elements_begin_, elements_;  // at each vertex
+  std::vector<std::int32_t> begin_, neighbours_;         // by vertex: its neighbours and itself, ascending
+  std::vector<std::int32_t> elements_begin_, elements_;  // by vertex: the elements at it
 };
 
 }  // namespace supple

@@ -43,8 +43,9 @@ double LatticeProbe::distance(const Vec3& p, Memory& near) const {
   return field - swell_;
 }
 
-// The distances at the way's start bound those on the way. A part is left out where the field of those before it, or
-// the distance of one after it, is certainly smaller by more than the blend's width.
+// Keeps the parts that matter on the way. The distances at its start bound those on it, so that a part is left out
+// where the field of those before it, or the distance of one after it, is certainly smaller by more than the blend's
+// width.
 LatticeProbe::Way::Way(const LatticeProbe& probe, const Vec3& start, double length, Memory& near)
     : probe_(probe), near_(near) {
   const std::size_t count = probe.surfaces_.size();

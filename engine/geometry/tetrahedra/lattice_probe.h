@@ -1,6 +1,7 @@
 // Asks a shape for its distances at the places of a lattice, which are many and near each other. Where the shape is a
-// union of closed surfaces, most of their triangles can be left out. It saves work and changes no answer: each has the
-// bits of Shape::distance. The shape can be swollen for that: all that is nearer to it than a length belongs to it.
+// union of closed surfaces, most of their triangles can be left out. This saves work and changes no answer: each has
+// the bits of Shape::distance. The shape can be swollen: then all that is nearer to it than a length belongs to it,
+// too.
 #pragma once
 
 #include <vector>
@@ -21,16 +22,17 @@ class LatticeProbe {
 
   double distance(const Vec3& p, Memory& near) const;
 
-  // The surface is at least this far from a place with such a distance. A surface with holes changes sides in them, far
-  // from its triangles, so that nothing is known.
+  // Returns how far the surface is, at least, from a place with this distance [m]. It is 0 where a surface has holes:
+  // sides change in holes, far from triangles, so that nothing is known.
   double clearance(double distance) const { return certainty_ * std::abs(distance); }
 
   // Asks about places on a straight way, which is short.
   class Way {
    public:
-    // distance: the field's value at the way's start. The probe and the memory must outlive this.
+    // start, length: where the way begins, and how far it leads [m]. The probe and the memory must outlive this object.
     Way(const LatticeProbe& probe, const Vec3& start, double length, Memory& near);
-    // ahead: how far from p the places lie, at most, that are asked about after it.
+    // Returns the distance at a place of the way. ahead: the largest distance from p of the places that are asked about
+    // after p [m].
     double distance(const Vec3& p, double ahead);
 
    private:

@@ -66,7 +66,7 @@ double unheld_share(const std::vector<char>& held) {
 // Tells what of a surface is thinner than an element of a uniform mesh.
 struct Thinness {
   double spacing = 0;                    // of the uniform lattice with the wanted number of vertices
-  double wanted = 0;                     // vertices that resolve nearly all
+  double wanted = 0;                     // number of vertices that resolve nearly all of it
   double thin_share = 0;                 // of the surface
   std::vector<ThicknessSample> samples;  // the thinnest first
 };
@@ -88,7 +88,7 @@ Thinness thinness_of(const TriMesh& boundary, int vertices) {
   return result;
 }
 
-// Says which share of the surface is thinner than an element, and which has none inside nevertheless. Returns an empty
+// Says which share of the surface is thinner than an element, and which share has no element inside. Returns an empty
 // text where neither is worth a word.
 std::string thinness_note(const Thinness& thinness, const TetMesh& mesh, int vertices) {
   const std::vector<char> held = held_samples(thinness.samples, mesh);
@@ -107,7 +107,7 @@ std::string thinness_note(const Thinness& thinness, const TetMesh& mesh, int ver
                     100 * unheld, place.x(), place.y(), place.z(), count_text(thinness.wanted));
 }
 
-// Returns how far elements reach beyond a surface. solid: inside it.
+// Returns how far elements reach beyond a surface. solid: the shape inside the surface.
 double reach_beyond(const TetMesh& mesh, const Shape& solid) {
   double most = 0;
   for (Eigen::Index v = 0; v < mesh.rest.rows(); ++v)
@@ -120,7 +120,7 @@ struct Attempts {
   const std::vector<ThicknessSample>& samples;  // of the surface
   TetMesh best;
   double least = 1.1;  // share of the surface that the best one leaves; more than there can be: there is no mesh
-  std::string reason = "is too thin for its elements";  // why the last attempt failed that did
+  std::string reason = "is too thin for its elements";  // why the last of the failed attempts failed
 
   // Makes a mesh, and tells whether it holds all of the surface.
   bool holds_all(const std::function<TetMesh()>& make) {
@@ -145,12 +145,13 @@ struct Attempts {
                                               reason, wanted.vertices, resolving));
 }
 
-// shape: inside the body's surface. Throws InputError.
+// Returns the best mesh of a body that some lattice makes. shape: the solid inside the body's surface. Throws
+// InputError where none makes a mesh.
 TetMesh tetrahedra_of(const SurfaceBody& body, const WantedMesh& wanted, const Shape& shape, const Thinness& thinness,
                       const SlowWork& work) {
   const MeshingListener listener = listener_of(wanted, work);
   Attempts attempts{thinness.samples, {}};
-  double uniform_loss = 0;  // of the surface, by a uniform lattice inside it
+  double uniform_loss = 0;  // share of the surface that a uniform lattice inside it loses
   const auto uniform = [&](const Shape& inside, double& loss) {
     // The first mesh of about the right size tells whether parts are lost: others of that size lose them too.
     MeshingListener judging = listener;
@@ -166,7 +167,8 @@ TetMesh tetrahedra_of(const SurfaceBody& body, const WantedMesh& wanted, const S
       return graded_tetrahedralize(shape, wanted.vertices, wanted.source, thinness.samples, swollen_to, listener);
     });
   };
-  // The last resort is much thicker than the surface, so that it must hold much that would be lost otherwise.
+  // A mesh that loses less than this share of the surface is taken in place of the last resort: a swollen shape, which
+  // is much thicker than the surface.
   constexpr double bearable = 0.05;
   // Where most of the surface is thin, no lattice inside it holds together, and there are no vertices to spare.
   if (thinness.thin_share < 0.5) {

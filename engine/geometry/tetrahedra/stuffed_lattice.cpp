@@ -117,9 +117,9 @@ class IsosurfaceStuffing {
     });
   }
 
-  // Nothing is asked about a site where the sites before it show that the surface is so far away that all of the site's
-  // edges lie on one side. What is kept for such a site is only a bound: its sign is right, and the surface is at least
-  // that far away.
+  // Sets the field at a site. Where the sites before it show that the surface is so far away that all of the site's
+  // edges lie on one side, nothing is asked, and the field is only a bound: its sign is right, and the surface is at
+  // least as far away as clearance() says for it.
   void sample_at(const Site& s, int first_layer, LatticeProbe::Memory& near) {
     double clear = -1, side = 1;
     const auto look = [&](const Site& before, double away) {
@@ -161,7 +161,8 @@ class IsosurfaceStuffing {
     return t;
   }
 
-  // Sites are in the order of layers, rows and places in a row.
+  // Lists the sites with cut edges, in the order of layers, rows and places in a row, and finds where their forward
+  // edges are cut.
   void find_cuts() {
     std::vector<std::vector<Site>> by_layer{std::size_t(layers())};
     threads_.run(layers(), [&](int k) {
@@ -203,8 +204,8 @@ class IsosurfaceStuffing {
     return {s[0] + sign * edge[0], s[1] + sign * edge[1], s[2] + sign * edge[2]};
   }
 
-  // Calls visit(the cut's fraction from its forward end, the other end, the fraction from s, the edge's direction) for
-  // each cut edge of s.
+  // Calls visit(the cut's fraction as it is kept, the other end, the fraction from the site, the edge's direction) for
+  // each cut edge of a site. The kept fraction is that from the end for which the edge is a forward one.
   template <class Visit>
   void for_each_cut(Cuts& cuts, const Visit& visit) {
     for (std::size_t e = 0; e < 7; ++e) {
@@ -347,7 +348,7 @@ class IsosurfaceStuffing {
     }
   }
 
-  // Each element of the lattice has two neighbouring centres and one edge of the square between their cells.
+  // Cuts all elements of the lattice. Each has two neighbouring centres and one edge of the square between their cells.
   void emit_all() {
     for (int k = 1; k < 2 * cells_[2]; k += 2) {
       for (int j = 1; j < 2 * cells_[1]; j += 2) {
@@ -387,7 +388,7 @@ class IsosurfaceStuffing {
   std::array<int, 3> cells_{};
   std::vector<double> field_;     // distance at each site; 0 where the site was moved onto the surface
   std::vector<Cuts> cuts_;        // of the sites with cut edges
-  std::vector<int> cuts_of_;      // of each site, its place among them, or -1
+  std::vector<int> cuts_of_;      // by site: its place among these, or -1
   std::vector<int> site_vertex_;  // vertex at each site, or -1
   std::vector<Eigen::RowVector3d> vertices_;
   std::vector<std::array<int, 4>> tets_;

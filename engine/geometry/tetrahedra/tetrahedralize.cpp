@@ -92,9 +92,9 @@ void check_inside(double volume, const std::string& source) {
 
 constexpr double whole = 0.85;  // share of the sampled volume, whose own error is a few per cent
 
-// A search for the spacing that gives the wanted number of vertices.
+// Describes a search for the spacing that gives the wanted number of vertices.
 struct Search {
-  double spacing;  // the first guess [m]
+  double spacing;  // that of the next attempt, and in the end that of the best mesh [m]
   double volume;   // of the body, about [m^3]
   int attempts;    // at most
   bool is_graded;
@@ -110,12 +110,14 @@ struct Search {
   double cells() const { return (extent / spacing + Vec3::Constant(4 + 2 * swell)).prod(); }
 };
 
-// A body that fills next to nothing of its box needs a lattice of more points than any body is worth: a cell takes 32
-// bytes, and a million of them take a twentieth of a second.
+// Returns how many cells a lattice may have, or those of all attempts together. A body that fills next to nothing of
+// its box needs a lattice of more points than any body is worth: a cell takes 32 bytes, and a million of them take a
+// twentieth of a second.
 double most_cells(int vertices) { return std::max(4e6, 100.0 * vertices); }
 double most_cells_of_all_attempts(int vertices) { return std::max(1.2e7, 400.0 * vertices); }
 
-// found: vertices of the best mesh, 0 where there is none. is_capped: whether lattices became too large.
+// Throws the InputError of a search in which no mesh comes near enough to the wanted number. found: vertices of the
+// best mesh, 0 where there is none. is_capped: whether lattices became too large.
 [[noreturn]] void refuse_number(int vertices, Eigen::Index found, bool is_capped, const std::string& source) {
   std::string text = fmt::format("cannot be meshed with {} vertices", vertices);
   if (is_capped) {
@@ -134,8 +136,8 @@ double most_cells_of_all_attempts(int vertices) { return std::max(1.2e7, 400.0 *
 // comes near enough.
 TetMesh nearest_mesh(Search& search, int vertices, const std::string& source, const MeshingListener& listener,
                      const std::function<TetMesh(double, const Vec3&, const std::function<void(double)>&)>& make) {
-  // A lattice much finer than that has more points than are wanted in the volume alone: what keeps most of them out of
-  // the mesh is too thin also for the next.
+  // A lattice finer than this has many more points in the volume alone than are wanted. Where most of them are kept out
+  // of the mesh because the shape is too thin, they are kept out of the next one, too.
   const double finest = 0.4 * search.spacing;
   TetMesh best;
   const auto miss = [&](const TetMesh& mesh) { return std::abs(static_cast<double>(mesh.rest.rows()) / vertices - 1); };
@@ -155,7 +157,7 @@ TetMesh nearest_mesh(Search& search, int vertices, const std::string& source, co
     };
     TetMesh mesh = make(search.spacing, shift - Vec3(shift.array().floor()), told);
     const double count = std::max<double>(static_cast<double>(mesh.rest.rows()), 1.0);
-    // More attempts do not join what some of about the right size have left apart.
+    // What some attempts of about the right size have left apart, further attempts do not join.
     const double held = quality(mesh).volume / search.volume;
     in_pieces += miss(mesh) < 0.1 && held < 0.75 ? 1 : 0;
     if (in_pieces == search.most_in_pieces()) refuse_pieces(source, held);
@@ -179,7 +181,7 @@ TetMesh nearest_mesh(Search& search, int vertices, const std::string& source, co
   refuse_number(vertices, best.rest.rows(), is_capped, source);
 }
 
-// With a volume far below the sampled one, parts are missing.
+// Throws InputError where the volume of the mesh is far below the sampled one, because then parts are missing.
 void check_whole(const TetMesh& mesh, double volume, const std::string& source) {
   const double share = quality(mesh).volume / volume;
   if (share < whole) refuse_pieces(source, share);

@@ -5,7 +5,8 @@
 
 namespace supple {
 
-// Lists where the two ends of an edge may become one vertex, the best place first; none: they must not.
+// Lists the places at which the two ends of an edge may become one vertex, the best one first. The list is empty where
+// they must not become one.
 std::vector<EditableSurface::Vertex> EditableSurface::merged_places(std::int32_t a, std::int32_t b,
                                                                     std::int32_t line) const {
   const Vertex &one = vertex(a), &other = vertex(b);
@@ -18,9 +19,9 @@ std::vector<EditableSurface::Vertex> EditableSurface::merged_places(std::int32_t
   return {middle(a, b, line), one, other};
 }
 
-// Tells whether the surface hangs together as before when an edge is collapsed: the link condition of Dey,
+// Tells whether the surface hangs together as before when an edge is collapsed, by the link condition of Dey,
 // Edelsbrunner, Guha, Nekhayev 1999, "Topology preserving edge contraction", for an edge inside a patch or along a
-// line. Beyond it, no two lines may become one.
+// line. In addition, no two lines may become one.
 bool EditableSurface::keeps_topology(std::int32_t a, std::int32_t b, const std::vector<std::int32_t>& between) const {
   std::vector<std::int32_t> of_a, of_b, common, opposite;
   neighbours(a, of_a);

@@ -8,7 +8,7 @@
 namespace supple {
 namespace {
 
-// Returns six times the volume of a tetrahedron [m^3].
+// Returns six times the signed volume of a tetrahedron [m^3].
 double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) { return (b - a).cross(c - a).dot(d - a); }
 
 }  // namespace
@@ -33,7 +33,8 @@ bool EdgeCrossings::are_beside(const Edge& edge, std::int32_t triangle) const {
   return false;
 }
 
-// The ends are on different sides of the triangle, and the line goes around its three edges the same way.
+// Tells whether an edge passes through the inside of a triangle: its ends are on different sides of the triangle, and
+// the line through them goes around the triangle's three edges in one sense.
 bool EdgeCrossings::passes(const Edge& edge, std::int32_t triangle, const Positions& x) const {
   const auto corner = triangles_.row(triangle);
   const Vec3 a = x.row(corner[0]), b = x.row(corner[1]), c = x.row(corner[2]);

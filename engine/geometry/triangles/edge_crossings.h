@@ -20,10 +20,10 @@ class EdgeCrossings {
   // Counts pairs of an edge and a triangle without a common vertex, of which the edge passes through the triangle's
   // inside.
   struct Count {
-    std::int64_t apart = 0;   // no edge joins a vertex of the one to one of the other
-    std::int64_t beside = 0;  // an edge does: at a sharp fold or at the tip of a cone
+    std::int64_t apart = 0;   // pairs of which no edge joins a vertex of the one to a vertex of the other
+    std::int64_t beside = 0;  // pairs of which an edge does: at a sharp fold or at the tip of a cone
   };
-  // x: n x 3 [m].
+  // Counts the pairs where the vertices are at x, n x 3 [m].
   Count count(const Positions& x);
 
  private:

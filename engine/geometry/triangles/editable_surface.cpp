@@ -118,8 +118,10 @@ void EditableSurface::halve(std::int32_t t, std::int32_t a, std::int32_t b, std:
   for (const std::int32_t now : {t, half}) around_[std::size_t(middle)].push_back(now);
 }
 
-// Compares the triangles of a ring in which a and b go to one place, without those that have both, with how they are.
-// The normal that they should have is that of all triangles of their patch in the ring.
+// Tells whether the triangles of a ring stay good enough when the vertices a and b go to one place: the worst score
+// must then be above good_score, or above the worst score before. Where a and b are two vertices, the triangles that
+// have both vanish, and do not count then. The ring must list the triangles of each patch one after the other, because
+// scores are those on a surface with the normal that the patch has in the ring.
 bool EditableSurface::keeps_sides(const std::vector<std::int32_t>& ring, std::int32_t a, std::int32_t b,
                                   const Vec3& to) const {
   double before = 1, after = 1;

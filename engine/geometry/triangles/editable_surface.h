@@ -46,16 +46,18 @@ class EditableSurface {
 
   // Returns the line that the edge between two vertices of a triangle is part of; -1: none.
   std::int32_t line_between(std::int32_t a, std::int32_t b, std::int32_t t) const;
-  // Lists the triangles that have two vertices.
+  // Lists the triangles that have both vertices a and b.
   void triangles_at(std::int32_t a, std::int32_t b, std::vector<std::int32_t>& found) const;
   // Lists the other ends of a vertex's edges, in increasing order.
   void neighbours(std::int32_t vertex, std::vector<std::int32_t>& found) const;
 
-  // Puts a vertex into the middle of an edge, of a line's part along the line. Returns it; nothing: it was refused.
+  // Puts a vertex into the middle of an edge; the middle of a part of a line is taken along the line. Returns the new
+  // vertex; nothing: the split was refused.
   std::optional<std::int32_t> split(std::int32_t a, std::int32_t b);
 
-  // Makes one vertex of an edge's two, in its middle where both may move, and removes the triangles between. Refuses
-  // where a new edge would be longer than `longest` [m]. Returns the vertex that is left.
+  // Makes one vertex of the two of an edge, and removes the triangles at the edge. Where both may move, the new vertex
+  // lies in the middle, or at one of the two if the middle is refused. Returns the vertex that is left; nothing: the
+  // collapse was refused, as it also is where an edge would be longer than `longest` [m].
   std::optional<std::int32_t> collapse(std::int32_t a, std::int32_t b, double longest);
 
   // Describes two triangles of a patch that share an edge on no line: (a, b, c) and (b, a, d).
@@ -63,16 +65,18 @@ class EditableSurface {
     std::int32_t first, second;  // the triangles
     std::int32_t a, b, c, d;
   };
-  // Returns the pair at a side of a triangle, where the triangle is the pair's first. So each pair is found at one of
-  // its two triangles only: at that which runs from the lower to the higher vertex.
+  // Returns the pair at a side of a triangle, of which the triangle is the first. Returns nothing where the side is on
+  // a line, and where it runs from the higher to the lower vertex, so that each pair is found at one of its two
+  // triangles only.
   std::optional<Pair> pair_at(std::int32_t t, int side) const;
   // Replaces the edge from a to b by one from c to d. Tells whether it did.
   bool flip(const Pair& pair);
 
-  // Moves a vertex if that turns no triangle over. Tells whether it did.
+  // Moves a vertex unless this turns a triangle over or makes one much worse than those around it. Tells whether it
+  // did.
   bool move(std::int32_t v, const Vertex& to);
 
-  // Returns where a vertex is along a line that it is on or at the end of [m].
+  // Returns the distance of a vertex from the start of a line that it lies on or ends, along the line [m].
   double along(std::int32_t line, std::int32_t v) const;
   // Returns a vertex on a line, at a distance from the line's start [m].
   Vertex on_line(std::int32_t line, double distance) const;

@@ -90,7 +90,8 @@ class FeatureSearch {
     edges_.push_back({sides_[side].low, sides_[side].high, triangles});
   }
 
-  // Numbers the corner of a side's triangle at the lower or the upper vertex of the side.
+  // Returns the number, among the corners of all triangles, of that corner of the side's triangle which is at the upper
+  // or at the lower vertex of the side.
   static std::size_t corner_at(const TriangleEdge& side, bool upper) {
     const int k = side.upward == upper ? (side.side + 1) % 3 : side.side;
     return 3 * at(side.triangle) + std::size_t(k);
@@ -102,8 +103,9 @@ class FeatureSearch {
     return std::atan2(m.cross(n).norm(), m.dot(n)) > limits_.crease;
   }
 
-  // The normals of triangles that are nearly flat are noise: coordinates in a file often have seven digits. Those of
-  // longish ones that are far thinner than the shortest crease show nothing that matters at that scale.
+  // Tells whether a triangle is so thin that its normal shows no crease. The normals of triangles that are nearly flat
+  // are noise: coordinates in a file often have seven digits. Those of longish triangles that are far thinner than the
+  // shortest crease is long show nothing that matters at that scale.
   bool is_thin(std::int32_t t, const Vec3& area) const {
     double longest = 0;
     for (int k = 0; k < 3; ++k)
@@ -112,8 +114,8 @@ class FeatureSearch {
     return height < 1e-5 * longest || (height < 1e-2 * longest && height < 1e-2 * limits_.shortest);
   }
 
-  // A vertex is a corner unless its triangles hang together through edges at it, and no line or one line of one kind
-  // runs through it.
+  // Flags the vertices that are corners. A vertex is no corner if its triangles hang together through edges at it, and
+  // if either no line runs through it, or one line along which the number of triangles at an edge stays the same there.
   void find_corners() {
     std::vector<std::int32_t> fans(edges_at_.size(), 0);
     for (Eigen::Index t = 0; t < mesh_.triangles.rows(); ++t) {
@@ -189,10 +191,10 @@ class FeatureSearch {
   const TriMesh& mesh_;
   const FeatureLimits limits_;
   const std::vector<TriangleEdge> sides_;
-  DisjointSets fans_;                               // of corners of triangles, three for each
-  DisjointSets patches_;                            // of triangles
-  std::vector<std::vector<std::size_t>> edges_at_;  // by vertex: edges on lines
-  std::vector<FeatureEdge> edges_;                  // on lines
+  DisjointSets fans_;                               // sets of corners, three for each triangle, that edges connect
+  DisjointSets patches_;                            // sets of triangles that edges on no line connect
+  std::vector<std::vector<std::size_t>> edges_at_;  // by vertex: its edges on lines
+  std::vector<FeatureEdge> edges_;                  // all edges on lines
   SurfaceFeatures result_;
 };
 

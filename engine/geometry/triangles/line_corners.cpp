@@ -18,7 +18,7 @@ class CornerSearch {
     for (std::size_t i = 0; i < row.size(); ++i) turns_.push_back(turn_at(i));
   }
 
-  // Tells whether the line turns sharply at a vertex, and at no near one more than there.
+  // Tells whether the line turns sharply at a vertex, and at no vertex near it more sharply.
   bool is_sharp(std::size_t i) const {
     if (!(turns_[i] > limits_.corner)) return false;
     const std::size_t count = turns_.size() - 1;
@@ -72,7 +72,7 @@ class CornerSearch {
   const Positions& points_;
   const bool closed_;
   const FeatureLimits limits_;
-  FeatureLine line_;  // closed rows are one line here, from a vertex back to the same
+  FeatureLine line_;  // a closed row is one line here, from a vertex back to itself
   std::vector<double> turns_;
 };
 

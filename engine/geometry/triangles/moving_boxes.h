@@ -29,7 +29,7 @@ Bounds whole_box(const Boxes& boxes) {
           Vec3(u[0].maxCoeff(), u[1].maxCoeff(), u[2].maxCoeff())};
 }
 
-// Returns the box in which a point moves, with so much around it.
+// Returns the box in which a point moves from a to b, in the frame that moves by `carried`, and a margin [m] around it.
 inline Bounds box_of_path(const Vec3& a, const Vec3& b, const Vec3& carried, double margin) {
   const Vec3 end = b - carried;
   return {a.cwiseMin(end).array() - margin, a.cwiseMax(end).array() + margin};

@@ -18,8 +18,8 @@ struct Foot {
   Vec3 offset;   // the point [m]
 };
 
-// Looks at the edges beyond which the origin's foot on the plane lies, those opposite to corners without positive
-// weight: each point outside a triangle has its closest point on one of these.
+// Returns the closest point on those edges beyond which the origin's foot on the plane lies, which are opposite to
+// corners without positive weight: each point outside a triangle has its closest point on one of these.
 Foot foot_on_edges(const std::array<Vec3, 3>& corners, const Vec3& weights) {
   Foot best{Vec3(1, 0, 0), corners[0]};
   double least = infinity;
@@ -39,8 +39,9 @@ Foot foot_on_edges(const std::array<Vec3, 3>& corners, const Vec3& weights) {
   return best;
 }
 
-// Round-off hides on which side of an edge of a needle the foot lies, so all edges of a needle are looked at. The
-// normal of a triangle that is almost a line is unknown, and its edges are as near as its plane.
+// Returns the point of a triangle that is closest to the origin. Round-off hides on which side of an edge of a needle
+// the foot lies, so all edges of a needle are looked at. The normal of a triangle that is almost a line is unknown, and
+// its edges are as near as its plane.
 Foot foot_in_triangle(const std::array<Vec3, 3>& corners) {
   constexpr double needle = 1e-12, almost_a_line = 1e-24;  // squared sine of the angle at the first corner
   const Vec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], area = ab.cross(ac);
@@ -136,7 +137,8 @@ void MovingSurface::set_start(const Positions& x) {
   }
 }
 
-// Children have larger indices than their node, so that their boxes are known when its own are made.
+// Sets the places of a pose, and its boxes from the last node to the first: children have larger indices than their
+// node, so that their boxes are known when those of the node are made.
 void MovingSurface::set(Pose& pose, const Positions& x) {
   SUPPLE_CHECK(x.rows(), ==, std::ssize(around_start_) - 1);
   pose.x = x;
@@ -194,7 +196,7 @@ Vec3 MovingSurface::vertex_normal(const Pose& pose, std::int32_t vertex) const {
   return sum;
 }
 
-// Returns the pseudonormal of the corner, edge or face to which weights without zeros belong, of unit length.
+// Returns the unit pseudonormal of the face, edge or corner to which the corners with positive weights belong.
 Vec3 MovingSurface::pseudonormal(const Pose& pose, std::int32_t t, const Vec3& weights) const {
   std::array<std::int32_t, 3> vertex{};
   int count = 0;
@@ -266,7 +268,8 @@ std::optional<MovingSurface::Place> MovingSurface::closest_among(const Pose& pos
   return seen_from(p, pose, triangle, foot.weights, foot.offset);
 }
 
-// offset: from the point to the place. Above a face, the gradient is its normal; elsewhere it is along the offset.
+// Returns a place of a triangle as it is seen from p. offset: from p to the place. Above a face, the gradient is the
+// normal of the face; elsewhere it is along the offset.
 MovingSurface::Place MovingSurface::seen_from(const Vec3& p, const Pose& pose, std::int32_t t, const Vec3& weights,
                                               const Vec3& offset) const {
   const Vec3 pseudo = pseudonormal(pose, t, weights);
@@ -327,7 +330,7 @@ std::optional<MovingSurface::Entry> MovingSurface::first_crossing(std::span<cons
   return first;
 }
 
-// Puts the passage through a triangle from either side, if there is one, in the place of a later one.
+// Replaces `first` by the passage through a triangle from either side, if there is one up to `latest` that is earlier.
 void MovingSurface::take_first_crossing(std::int32_t t, const Vec3& a, const Vec3& b, double roundoff, double latest,
                                         std::optional<Entry>& first) const {
   SeenTriangle seen = seen_triangle(t, a, b);
@@ -388,7 +391,7 @@ SeenTriangle MovingSurface::seen_triangle(std::int32_t t, const Vec3& a, const V
   return seen;
 }
 
-// Puts the passage through a triangle, if there is one up to `latest`, in the place of a later one.
+// Replaces `first` by the passage through a triangle, if there is one up to `latest` that is earlier.
 void MovingSurface::take_if_earlier(std::int32_t t, const SeenTriangle& seen, double roundoff, double latest,
                                     std::optional<Entry>& first) {
   const std::optional<Passage> passage = first_passage(seen, roundoff, first ? first->share : latest);

@@ -1,9 +1,10 @@
-// Represents the surface of a body that moves in a step, a closed one or a sheet, whose places have no inside: each
-// vertex moves evenly from its place at the start to that at the end. It finds the closest place of the surface at both
-// times, and where a point that moves evenly too first enters. The boxes of its tree follow the vertices; which
-// triangles they hold is fixed by the rest positions. The sign of a distance is that of the angle-weighted pseudonormal
-// (Baerentzen, Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005), which is right where
-// the surface does not cross itself. Solids that keep their shape are in solids/triangle_solid.h.
+// Represents the surface of a body that moves in a step: a closed surface, or a sheet, which has no inside. Each vertex
+// moves evenly from its place at the start to that at the end. The class finds the place of the surface that is closest
+// to a point at either time, and where a point that moves evenly, too, first enters. The boxes of its tree follow the
+// vertices; which triangles they hold is fixed by the rest positions. The sign of a distance is that of the
+// angle-weighted pseudonormal (Baerentzen, Aanaes, Signed distance computation using the angle weighted pseudonormal,
+// 2005), which is right where the surface does not cross itself. Solids that keep their shape are in
+// solids/triangle_solid.h.
 #pragma once
 
 #include <array>
@@ -21,9 +22,10 @@ namespace supple {
 
 // Queries may run on any number of threads between two calls that set places, and give the same bits on each.
 //
-// Where a query takes `carried`, that is a motion which all take part in [m]. Boxes are compared in the frame that
-// moves by it, so that few triangles need a closer look where all move fast together. It changes no answer of
-// first_entry; the other queries answer "yes" less often the better it fits.
+// Where a query takes `carried`, this is a motion in which the surface and what is asked about both take part [m].
+// Boxes are compared in the frame that moves by `carried`, so that few triangles need a closer look where all move fast
+// together. Queries for entries, crossings and exits have the same answer with each `carried`. The others go by boxes
+// alone, and the better `carried` fits, the less often they find something near that is not.
 class MovingSurface {
   // The nodes of the binary tree are packed so that each has up to four children: nodes, or the triangles of a leaf.
   static constexpr int width = 4;
@@ -38,8 +40,8 @@ class MovingSurface {
   // vertices of the body, n x 3 [m]; at first, they are the places at the start and at the end.
   MovingSurface(Triangles triangles, const Positions& rest);
 
-  // Sets the places of the vertices at the start and at the end of the step, n x 3 [m]. It is quick to start where the
-  // surface has ended.
+  // Sets the places of the vertices at the start and at the end of the step, n x 3 [m]. set_start() takes little time
+  // for the places that set_end() has set last.
   void set_start(const Positions& x);
   void set_end(const Positions& x) { set(end_, x); }
 
@@ -51,12 +53,12 @@ class MovingSurface {
     double distance;  // negative inside [m]
     Vec3 normal;      // gradient of the distance, of unit length; the pseudonormal where the point is on the surface
   };
-  // Tells which triangles a query takes. A vertex of another body, for instance, is not held by what faces the way that
-  // it does itself, such as the side of a cube at the edge of a lid.
+  // Tells which triangles a query takes. A vertex of another body, for instance, is not held by triangles that face the
+  // way in which the vertex itself faces, such as those on the side of a cube at the edge of a lid.
   using Takes = std::function<bool(std::int32_t triangle)>;
-  // Returns nothing where the surface is further away than `most` [m]. A point counts as on the surface within a
-  // billionth of the largest coordinate. Where all triangles around have no area, the point is outside.
-  // takes: null to take all.
+  // Returns the place of the surface that is closest to p at the start or at the end; nothing where the surface is
+  // further away than `most` [m]. A point counts as on the surface within a billionth of the largest coordinate. Where
+  // all triangles around have no area, the point is outside. takes: null to take all.
   std::optional<Place> closest_at_start(const Vec3& p, double most, const Takes* takes = nullptr) const {
     return closest(start_, p, most, takes);
   }
@@ -64,7 +66,7 @@ class MovingSurface {
     return closest(end_, p, most, takes);
   }
 
-  // These look at some triangles alone, all of them [m].
+  // Does the same, but looks at the given triangles alone, and at each of them.
   std::optional<Place> closest_at_start(std::span<const std::int32_t> triangles, const Vec3& p, double most,
                                         const Takes& takes) const {
     return closest_among(start_, triangles, p, most, takes);
@@ -93,10 +95,11 @@ class MovingSurface {
   std::optional<Entry> first_entry(const Vec3& a, const Vec3& b, const Vec3& carried, double latest = 1,
                                    const Takes* takes = nullptr) const;
 
-  // Finds where a point first passes through a triangle from either side. The normal points to where it came from.
+  // Finds where a point first passes through a triangle from either side. The normal points to the side from which the
+  // point comes.
   std::optional<Entry> first_crossing(const Vec3& a, const Vec3& b, const Vec3& carried, double latest = 1) const;
 
-  // These look at some triangles alone.
+  // Does the same, but looks at the given triangles alone.
   std::optional<Entry> first_crossing(std::span<const std::int32_t> triangles, const Vec3& a, const Vec3& b,
                                       double latest) const;
   std::optional<Entry> first_entry(std::span<const std::int32_t> triangles, const Vec3& a, const Vec3& b,
@@ -113,8 +116,8 @@ class MovingSurface {
   // which the point and each triangle move.
   bool is_near(const Vec3& a, const Vec3& b, const Vec3& carried, double margin) const;
 
-  // Calls visit(triangle) for each one to which an edge may come nearer than `margin` [m], by the boxes in which both
-  // move. start, end: the edge's ends at both times.
+  // Calls visit(triangle) for each triangle to which an edge may come nearer than `margin` [m], by the boxes in which
+  // both move. start, end: the places of the edge's two ends at the start and at the end of the step.
   using VisitTriangle = std::function<void(std::int32_t triangle)>;
   void visit_triangles_near(const std::array<Vec3, 2>& start, const std::array<Vec3, 2>& end, const Vec3& carried,
                             double margin, const VisitTriangle& visit) const;
@@ -125,17 +128,17 @@ class MovingSurface {
 
   // Looks for vertices of the surface and triangles of its own that may come nearer than `margin` [m] to each other.
   // Calls visit(vertex, triangle) for each pair whose boxes do, until one call returns true; tells whether one did.
-  // Triangles of one leaf of the tree are not paired with its vertices, nor are parts of the surface whose normals at
-  // the start all point the same way: cosines above `same_way`. Without these, a smooth surface would meet itself at
-  // each vertex.
+  // Left out are pairs of a vertex and a triangle of one leaf of the tree, and pairs from two parts of the surface
+  // between whose normals at the start all cosines are above `same_way`. Otherwise, a smooth surface would meet itself
+  // at each vertex.
   using VisitPair = std::function<bool(std::int32_t vertex, std::int32_t triangle)>;
   bool any_own_pair(double margin, const Vec3& carried, double same_way, const VisitPair& visit) const;
 
-  // Tells what a sheet's parts, which are those of the tree, have to do with each other.
+  // Holds what any_own_triangles() must know of a sheet's parts, which are the nodes of the tree.
   struct SheetParts {
     std::vector<char> is_connected;               // by node: whether its triangles hang together by vertices
     std::vector<std::vector<std::int32_t>> rims;  // by node: vertices that other triangles have too, ascending
-    // Holds boxes around the normals of what each node's children hold, for one pose; known from query to query.
+    // Keeps boxes around the normals of what each node's children hold, for one pose, from query to query.
     struct Normals {
       std::uint64_t pose = 0;
       std::vector<Boxes> normals;
@@ -159,7 +162,7 @@ class MovingSurface {
 
  private:
   struct Node {
-    // Each is the index of a node, which is larger than its own, or the complement of a triangle.
+    // Each is the index of a node, larger than that of this one, or the complement of a triangle.
     std::array<std::int32_t, width> child;
     int count = 0;
     std::int32_t first_vertex = 0, vertices = 0;  // a range of own_vertices_
@@ -169,7 +172,7 @@ class MovingSurface {
   // Holds the surface at one time.
   struct Pose {
     Positions x;               // n x 3 [m]
-    std::uint64_t number = 0;  // of the pose among all that were set
+    std::uint64_t number = 0;  // number of the pose among all that were set
     std::vector<Boxes> boxes;  // one for each node
     Bounds bounds;
     double on_surface = 0;  // nearer than this, the vector to a point has no reliable direction [m]
@@ -213,8 +216,8 @@ class MovingSurface {
   std::vector<Node> nodes_;                 // the root first
   std::vector<std::int32_t> around_start_;  // where each vertex's triangles begin in around_; n + 1
   std::vector<std::int32_t> around_;
-  std::vector<std::int32_t> own_vertices_;  // of the leaves: each vertex belongs to one that has a triangle at it
-  std::uint64_t poses_ = 0;                 // that were set
+  std::vector<std::int32_t> own_vertices_;  // vertices by leaf; each belongs to one leaf that has a triangle at it
+  std::uint64_t poses_ = 0;                 // how many poses were set
   Pose start_, end_;
 };
 

@@ -30,15 +30,15 @@ std::string triangle_text(const Numbered& surface, Eigen::Index t);
 // that no triangle names.
 TriMesh merged(const TriMesh& raw);
 
-// Returns the flagged triangles alone, with all vertices.
+// Returns the listed triangles alone, with all vertices.
 Numbered subset(const Numbered& surface, const std::vector<Eigen::Index>& kept);
 
 // Throws InputError where the surface has no triangles, where a triangle names a vertex that is not there, and where a
 // triangle's corner is not finite or beyond 1e50.
 void check_numbers(const TriMesh& raw, const std::string& name);
 
-// Merges equal positions, and leaves out triangles without area and those that repeat others, of which the notes tell.
-// Throws InputError where indices or numbers are no good, or where no triangle is left.
+// Merges equal positions, and leaves out triangles without area and those that repeat others; the notes tell of both.
+// Throws InputError as check_numbers() does, and where no triangle is left.
 Numbered cleaned(const TriMesh& raw, const std::string& name, std::vector<std::string>* notes);
 
 // Describes what a triangle has across its edge from corner k to k + 1.

@@ -4,10 +4,10 @@
 
 namespace supple {
 
-// Walks through pairs of nodes, and asks of all that two nodes hold whether it may meet.
+// Walks down the tree through pairs of nodes, and leaves out those of which no triangles can meet.
 struct MovingSurface::OwnSearch {
   const MovingSurface& surface;
-  double margin;  // with what round-off may add to it [m]
+  double margin;  // the query's margin, and what round-off may add to it [m]
   Vec3 carried;
   double same_way;
   std::vector<Boxes> normals;  // by node: boxes around the unit normals of what its children hold
@@ -37,11 +37,11 @@ struct MovingSurface::OwnSearch {
     }
   }
 
-  // Tells which of a node's children may meet a box in which normals are in another box.
+  // Tells which of a node's children may meet what moves in `box` and has its normals in `facing`.
   std::array<bool, width> may_meet(std::int32_t node, const Bounds& box, const Bounds& facing) const {
     const auto n = std::size_t(node);
     const Lanes gap = gaps(surface.start_.boxes[n], surface.end_.boxes[n], carried, box);
-    Lanes cosine = Lanes::Zero();  // the least one between normals of both
+    Lanes cosine = Lanes::Zero();  // a lower bound of the cosines between normals of both
     for (int axis = 0; axis < 3; ++axis) {
       const auto k = std::size_t(axis);
       const Lanes &low = normals[n].lower[k], &high = normals[n].upper[k];
@@ -76,7 +76,8 @@ struct MovingSurface::OwnSearch {
     return box;
   }
 
-  // Visits a leaf's vertices with the triangles of another leaf.
+  // Visits a leaf's vertices with the triangles of another leaf that may come near, until a call returns true; tells
+  // whether one did.
   bool any_of_leaves(const Node& leaf, std::int32_t other, const VisitPair& visit) const {
     const auto n = std::size_t(other);
     for (std::int32_t i = 0; i < leaf.vertices; ++i) {

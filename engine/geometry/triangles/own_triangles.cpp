@@ -27,7 +27,7 @@ MovingSurface::SheetParts MovingSurface::sheet_parts() const {
   parts.is_connected.assign(nodes_.size(), 0);
   parts.rims.resize(nodes_.size());
   std::vector<std::vector<std::int32_t>> triangles(nodes_.size());
-  std::vector<std::int32_t> number(std::size_t(start_.x.rows()), -1);  // of a vertex in a node
+  std::vector<std::int32_t> number(std::size_t(start_.x.rows()), -1);  // by vertex: its number in the node, or -1
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     const Node& node = nodes_[n];
     for (int c = 0; c < node.count; ++c) {
@@ -69,14 +69,14 @@ MovingSurface::SheetParts MovingSurface::sheet_parts() const {
   return parts;
 }
 
-// Walks through pairs of nodes, and asks of all that two nodes hold whether it may meet.
+// Walks down the tree through pairs of nodes, and leaves out those of which no triangles can meet.
 struct MovingSurface::SheetSearch {
   using Lanes = Boxes::Lanes;
   using Mask = Eigen::Array<bool, width, 1>;
 
   const MovingSurface& surface;
   const SheetParts& parts;
-  double margin;  // with what round-off may add to it [m]
+  double margin;  // the query's margin, and what round-off may add to it [m]
   Vec3 carried;
   const VisitTriangles& visit;
 
@@ -91,7 +91,7 @@ struct MovingSurface::SheetSearch {
     return {start.lower.cwiseMin(end.lower - carried), start.upper.cwiseMax(end.upper - carried)};
   }
 
-  // Returns a box around the normals of what a node's child holds, or the node, at both times.
+  // Returns a box around the normals, at both times, of what a node's child or the whole node holds.
   Bounds facing(std::size_t node, int c) const {
     return both(lane(parts.start.normals[node], c), lane(parts.end.normals[node], c));
   }
@@ -104,7 +104,8 @@ struct MovingSurface::SheetSearch {
     return gaps(surface.start_.boxes[node], surface.end_.boxes[node], carried, box) <= margin;
   }
 
-  // Tells of which of a node's children all normals and those in a box are within some 75 degrees of their middle.
+  // Tells for which of a node's children there is a direction that is within some 75 degrees of all of the child's
+  // normals and of those in a box.
   Mask alike(std::size_t node, const Bounds& box) const {
     constexpr double least_cosine = 0.25;
     const Boxes &start = parts.start.normals[node], &end = parts.end.normals[node];
@@ -126,8 +127,9 @@ struct MovingSurface::SheetSearch {
 
   using Waiting = std::vector<std::array<std::int32_t, 2>>;
 
-  // Takes something with the children of a node from number `first` on: a node or the complement of a triangle, with
-  // its box and its normals. Tells whether a visit returned true.
+  // Pairs a node, or the triangle of which `one` is the complement, with the children of another node from number
+  // `first` on. Two triangles that may come near are visited, and two nodes of which triangles can meet are put in
+  // `waiting`. box, normals: those of `one`. Tells whether a visit returned true.
   bool any_with(std::int32_t one, const Bounds& box, const Bounds& normals, std::int32_t node, int first,
                 Waiting& waiting) const {
     const auto n = std::size_t(node);
@@ -188,7 +190,7 @@ struct MovingSurface::SheetSearch {
   }
 };
 
-// Returns the normals of a leaf's triangles, by axis; the first one's again where there are fewer.
+// Returns the unit normals of a leaf's triangles, by axis; lanes without a triangle have that of the first one.
 std::array<MovingSurface::Boxes::Lanes, 3> MovingSurface::unit_normals(const Pose& pose, const Node& leaf) const {
   using Lanes = Boxes::Lanes;
   std::array<std::array<Lanes, 3>, 3> corner;  // by corner and axis
@@ -212,7 +214,7 @@ std::array<MovingSurface::Boxes::Lanes, 3> MovingSurface::unit_normals(const Pos
   return normal;
 }
 
-// Puts boxes around the unit normals of what each node's children hold at one time.
+// Finds boxes around the unit normals of what each node's children hold at one time, unless they are known already.
 void MovingSurface::find_normals(const Pose& pose, SheetParts::Normals& of) const {
   if (std::exchange(of.pose, pose.number) == pose.number) return;
   std::vector<Boxes>& normals = of.normals;

@@ -1,5 +1,5 @@
-// Brings points back to a patch of a surface (feature_lines.h), so that one of a sheet never ends on another sheet that
-// is near, or around a crease.
+// Brings points back to a patch of a surface (feature_lines.h), so that a point of one sheet never ends on another
+// sheet that is near, or beyond a crease.
 #pragma once
 
 #include <vector>
@@ -18,9 +18,9 @@ class PatchProjection {
     std::int32_t triangle;  // of the surface
     Vec3 point;
   };
-  // Returns the closest point of a patch, among its triangles that face a direction where there are some, or among all
-  // where the direction is zero. near: a
-  // triangle that is perhaps close, which makes the search quick; -1: none.
+  // Returns the closest point of a patch, among its triangles that face a direction. All of them count where none faces
+  // it, and where the direction is zero. near: a triangle that is perhaps close, which makes the search quick; -1:
+  // none.
   Place closest(const Vec3& p, std::int32_t patch, const Vec3& facing, std::int32_t near) const;
 
  private:

@@ -69,8 +69,8 @@ Times ends_of_slopes(const Cubic& cubic, double latest) {
   return times;
 }
 
-// Returns a root between two times, at the first of which the cubic is not negative, and at the second it is. Newton's
-// steps are taken while they stay between the times that are known; the last sixty steps halve what is left.
+// Returns a root between two times: the cubic is not negative at `above`, and is negative at `below`. Newton's steps
+// are taken while they stay between the times that are known; the last sixty steps halve what is left.
 double root_between(const Cubic& cubic, double above, double below) {
   double t = 0.5 * (above + below);
   for (int i = 0; i < 90; ++i) {

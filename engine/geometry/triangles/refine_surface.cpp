@@ -9,13 +9,13 @@
 namespace supple {
 namespace {
 
-// Halves each edge that is too long once.
+// Halves each edge that is too long, once.
 class Pass {
  public:
   Pass(std::vector<Vec3>& points, std::vector<std::array<std::int32_t, 2>>& ends, double longest)
       : points_(points), ends_(ends), longest_(longest) {}
 
-  // Appends the parts of a triangle: it alone where no edge is too long.
+  // Appends the parts of a triangle: the triangle itself where no edge is too long.
   void split(const CornerNumbers& corners, std::vector<CornerNumbers>& parts) {
     std::array<std::int32_t, 3> middle;
     for (std::size_t k = 0; k < 3; ++k) middle[k] = middle_of(corners[k], corners[(k + 1) % 3]);

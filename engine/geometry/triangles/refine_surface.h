@@ -12,7 +12,7 @@ namespace supple {
 struct RefinedSurface {
   TriMesh mesh;                                   // the first vertices are those of the surface
   std::vector<std::int32_t> parent;               // by triangle: the one that it is a part of
-  std::vector<std::array<std::int32_t, 2>> ends;  // by vertex after the first ones: those in whose middle it lies
+  std::vector<std::array<std::int32_t, 2>> ends;  // by vertex after the first ones: the two in whose middle it lies
 };
 
 // Halves edges that are longer than `longest` [m] until none is. Both triangles at an edge meet in its midpoint, so no

@@ -26,7 +26,8 @@ void check_options(const RemeshOptions& options, const std::string& name) {
   }
 }
 
-// Long edges are split before short ones are collapsed, so that a mesh of slivers has more triangles on the way.
+// Throws InputError where there would be too many triangles, in the new mesh or on the way to it: long edges are split
+// before short ones are collapsed, so that a mesh of slivers has more triangles meanwhile.
 void check_size(const TriMesh& mesh, double edge_length, const std::string& name) {
   constexpr double most = 1e7;
   double triangles = 0, halves = 0;
@@ -66,7 +67,7 @@ std::vector<std::array<std::int32_t, 2>> named_lines(const RemeshOptions& option
   return lines;
 }
 
-// Wants one triangle for each 60 degrees at a corner, and at least one.
+// Returns how many triangles are wanted around each vertex that is a corner: one for each 60 degrees, and at least one.
 std::vector<double> wanted_triangles(const TriMesh& mesh, const SurfaceFeatures& features) {
   std::vector<double> angles(at(mesh.points.rows()), 0);
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {

@@ -43,8 +43,9 @@ struct RemeshedSurface {
   // By vertex: where it lies on the input. At a fold that is too sharp for the new edges and no crease, a vertex that
   // would turn triangles over stays off the input, and this is the nearest place.
   std::vector<RemeshedPlace> places;
-  // By triangle and corner: the same, but in a triangle of the input on this triangle's side of each line. What jumps
-  // at a line, such as the coordinates of a texture at its seams, is interpolated at these.
+  // By triangle and corner: where the vertex lies on the input, in a triangle of the input that is on this triangle's
+  // side of each line. What jumps at a line, such as the coordinates of a texture at its seams, is interpolated at
+  // these places.
   std::vector<std::array<RemeshedPlace, 3>> corners;
 };
 

@@ -8,8 +8,8 @@
 
 namespace supple {
 
-// Takes the triangles that are left of an edited surface. joined: what was edited, perhaps with triangles turned over;
-// surface: what was welded to that.
+// Returns the triangles that are left of an edited surface, and the places of their vertices. joined: the surface that
+// was edited, some of whose triangles may have been turned over. surface: the one from which `joined` was welded.
 RemeshedSurface with_places(const EditableSurface& edited, const PatchProjection& projection,
                             const SurfaceFeatures& features, const WeldedSurface& joined, const TriMesh& surface);
 

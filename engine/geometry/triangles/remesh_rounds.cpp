@@ -9,7 +9,8 @@
 namespace supple {
 namespace {
 
-// Orders edges by their lengths when they were listed, and equally long ones by their vertices.
+// Describes an edge by its vertices and by the length that it had when it was listed. Edges are ordered by this length,
+// and equally long ones by their vertices.
 struct ListedEdge {
   double length;
   std::int32_t low, high;
@@ -32,7 +33,7 @@ struct LongerFirst {
   }
 };
 
-// Lists the edges that fulfil a condition; those inside patches twice.
+// Lists the edges that fulfil a condition, each as often as it has triangles.
 template <class Condition>
 std::vector<ListedEdge> edges_where(const EditableSurface& surface, const Condition& condition) {
   std::vector<ListedEdge> edges;
@@ -94,8 +95,9 @@ namespace {
 
 using EdgePair = EditableSurface::Pair;
 
-// Flips what is wanted until nothing is, but visits no pair for ever: rounding could flip one back. After the first
-// visit only triangles around earlier flips are looked at again.
+// Flips the pairs that are wanted until there are none. It visits the triangles a few times only, because by rounding a
+// pair could be flipped to and fro for ever. After the first visit, only triangles around the flips of the visit before
+// are looked at.
 template <class Wanted>
 void flip_where(EditableSurface& surface, const Wanted& wanted) {
   constexpr int visits = 8;
@@ -162,7 +164,8 @@ namespace {
 
 using MovingVertex = EditableSurface::Vertex;
 
-// Tries a way and then parts of it.
+// Moves a vertex by all of a way, or else by half, a quarter or none of it. place: returns the vertex after a share of
+// the way.
 template <class Place>
 void move_toward(EditableSurface& surface, std::int32_t v, const Place& place) {
   for (const double share : {1.0, 0.5, 0.25, 0.0})
@@ -171,7 +174,7 @@ void move_toward(EditableSurface& surface, std::int32_t v, const Place& place) {
 
 void relax_on_line(EditableSurface& surface, std::int32_t v) {
   const MovingVertex now = surface.vertex(v);
-  double low = infinity, high = -infinity;  // of the neighbours on the line
+  double low = infinity, high = -infinity;  // places of the neighbours on the line, along it [m]
   for (const std::int32_t t : surface.around(v)) {
     const EditableSurface::Triangle& own = surface.triangle(t);
     for (std::size_t k = 0; k < 3; ++k) {

@@ -14,8 +14,8 @@ void split_long_edges(EditableSurface& surface, double longest);
 // `longest` [m].
 void collapse_short_edges(EditableSurface& surface, double shortest, double longest);
 
-// Flips edges as long as that brings the numbers of triangles around their vertices nearer to `wanted`. wanted: by
-// vertex of the input that is a corner; a vertex inside a patch has six, one on a line three on each side.
+// Flips edges as long as this brings the numbers of triangles around vertices nearer to those that are wanted: six
+// inside a patch, three on each side of a line, and `wanted` at a corner, by vertex of the input.
 void flip_toward_regular(EditableSurface& surface, const std::vector<double>& wanted);
 
 // Flips edges where that makes the smallest angle of their two triangles larger.

@@ -82,7 +82,7 @@ class BorderGrid {
   std::map<Cell, std::vector<std::int32_t>> cells_;
 };
 
-// Numbers the vertices that are left in their order.
+// Returns the mesh of the vertices that are left, numbered in the order that they had.
 TriMesh with_vertices_left(const Positions& points, Triangles triangles, DisjointSets& sets) {
   std::vector<std::int32_t> number(std::size_t(points.rows()), -1);
   std::vector<Eigen::Index> kept;
@@ -101,7 +101,7 @@ double distance_to(const Vec3& p, const Vec3& from, const Vec3& to) {
   return (p - from - along * way).norm();
 }
 
-// Counts the border vertices that lie beside a border edge of another place.
+// Counts the border vertices that lie within a distance of a border edge that is not theirs.
 long count_beside(const Border& border, const Positions& points, double distance) {
   return std::ranges::count_if(border.vertices, [&](std::int32_t v) {
     const std::set<std::int32_t>& near = border.near.at(v);

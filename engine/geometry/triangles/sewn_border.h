@@ -14,9 +14,9 @@ struct SewnSurface {
   long beside = 0;      // how many of these are within the distance of a border edge that is not theirs
 };
 
-// Makes one vertex, in their middle, of two on the border that are within `distance` [m] and nearest to each other;
-// those that an edge joins stay two. It is repeated while there are such, on what is then the border, so that several
-// pieces may meet in one vertex. All triangles stay, between the new vertices.
+// Makes one vertex of two on the border that are within `distance` [m] and each the nearest one to the other; two that
+// an edge joins stay two. This is repeated on the new border while there are such pairs, so that several pieces may
+// meet in one vertex, which lies in the mean of all that it stands for. All triangles stay, between the new vertices.
 SewnSurface sewn_border(const TriMesh& surface, double distance);
 
 }  // namespace supple

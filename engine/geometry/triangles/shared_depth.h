@@ -12,7 +12,8 @@ struct SharedDepth {
   Vec3 place = Vec3(0, 0, 0);  // the vertex that is deepest [m]; of no meaning where the depth is 0
 };
 
-// A cloth, which has no elements, has vertices in the other mesh, and none of the other's are in it.
+// Returns the largest depth of a vertex of one mesh inside the other. A cloth has no elements: vertices of it may be
+// inside the other mesh, and no vertex is inside the cloth.
 SharedDepth shared_depth(const PosedMesh& a, const PosedMesh& b);
 
 }  // namespace supple

@@ -7,12 +7,12 @@
 
 namespace supple {
 
-// The numbers of a triangle's three vertices.
+// Holds the numbers of a triangle's three vertices.
 using CornerNumbers = std::array<std::int32_t, 3>;
 
-// Appends the parts of a triangle: it alone where no edge is cut. middle: of the edge from corner k to the next; -1
-// where it stays whole. Where two edges are cut, the shorter diagonal is taken. length2: returns the squared distance
-// of two vertices.
+// Appends the parts of a triangle: the triangle itself where no edge is cut. middle: the vertex in the middle of the
+// edge from corner k to the next; -1: the edge stays whole. Where two edges are cut, the shorter diagonal is taken.
+// length2: returns the squared distance of two vertices.
 template <class Length2>
 void split_triangle(const CornerNumbers& corners, const std::array<std::int32_t, 3>& middle, const Length2& length2,
                     std::vector<CornerNumbers>& parts) {

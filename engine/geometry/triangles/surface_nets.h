@@ -43,9 +43,9 @@ TriMesh triangles_of(const QuadSurface& surface, Diagonal diagonal);
 // is x, bit 1 is y, bit 2 is z.
 std::optional<Vec3> net_vertex(const std::array<float, 8>& value, double cell);
 
-// Walks through the grid layer by layer, and keeps the names of two layers' vertices. value: a function that returns
-// the value of a point by its place, below 0 inside. The surface is closed where the two outermost layers of points
-// are outside.
+// Returns the surface of a field. value: a function that returns the field's value at a point by the point's number in
+// the grid, below 0 inside. The surface is closed where the two outermost layers of points are outside. The grid is
+// walked through layer by layer, and the names of two layers' vertices are kept.
 template <class Value>
 QuadSurface surface_nets(const PointGrid& grid, const Value& value) {
   QuadSurface surface;

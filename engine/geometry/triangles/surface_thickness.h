@@ -27,7 +27,7 @@ std::vector<ThicknessSample> sampled_thickness(const TriMesh& boundary, int coun
 double spacing_for(double volume, double area, double vertices);
 double vertices_for(double volume, double area, double spacing);
 
-// Returns how many vertices resolve all but the thinnest twentieth of the surface: there the solid is one cell thick.
+// Returns how many vertices make the solid at least one cell thick at all but the thinnest twentieth of its surface.
 double vertices_wanted(const std::vector<ThicknessSample>& samples, double volume, double area);
 
 double area_of(const TriMesh& mesh);

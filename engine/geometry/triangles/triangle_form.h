@@ -18,8 +18,9 @@ struct TriangleForm {
       : area(0.5 * (b - a).cross(c - a)),
         squares((b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm()) {}
 
-  // Says how good the triangle is on a surface with this unit normal: 1 for one with equal sides, or the cosine of its
-  // tilt over 4 if that is less; negative where it is turned over.
+  // Returns how good the triangle is on a surface with this unit normal: its shape or 1/4, whichever is less, times the
+  // cosine of its tilt. The shape is 1 for equal sides, and near 0 for a sliver. The score is negative where the
+  // triangle is turned over, and 0 where it has no area.
   double score(const Vec3& normal) const {
     const double facing = area.dot(normal), size = area.norm();
     if (!(size > 0)) return 0;

@@ -10,7 +10,8 @@
 namespace supple {
 namespace {
 
-// Follows Moeller and Trumbore, Fast, minimum storage ray-triangle intersection, 1997, for triangles of both sides.
+// Returns the length, over that of `direction`, after which a ray meets a triangle from either side; infinity where it
+// does not. Follows Moeller and Trumbore, Fast, minimum storage ray-triangle intersection, 1997.
 double hit_of_triangle(const Vec3& from, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, across = direction.cross(ac);
   const double facing = ab.dot(across);

@@ -28,8 +28,8 @@ class TriangleSoup {
   // count exactly, far parts by their expansion, with errors of up to about 0.02.
   double winding_number(const Vec3& p) const;
 
-  // Does the same for many places. It takes less time for each where those that follow one another are near each other,
-  // in groups of 64.
+  // Does the same for many places, in groups of 64 that follow one another. It takes less time for each place where
+  // those of a group are near each other.
   void winding_numbers(const std::vector<Vec3>& places, std::vector<double>& result) const;
 
   // Returns the length along a unit direction to the first triangle other than `except` (-1: none is left out),

@@ -18,8 +18,8 @@ double half_area(const Bounds& box) {
   return e.x() * e.y() + e.y() * e.z() + e.z() * e.x();
 }
 
-// Each node has its place before it is made, so that subtrees can be made at the same time: a subtree of some triangles
-// has as many nodes as any other of as many.
+// Builds a tree, and parts of it at the same time: each node has its place in the list before it is made, because all
+// subtrees of equally many triangles have equally many nodes.
 class TreeBuilder {
  public:
   TreeBuilder(const TriMesh& mesh, TreeCut cut) : mesh_(mesh), cut_(cut), keys_(std::size_t(mesh.triangles.rows())) {
@@ -84,7 +84,7 @@ class TreeBuilder {
     return 1 + nodes_of(middle_of(count)) + nodes_of(count - middle_of(count));
   }
 
-  // Leaves parts of at most `small` triangles waiting.
+  // Adds the nodes of a part, but leaves parts of at most `small` triangles in `waiting`.
   void add(const Part& part, std::int32_t small, std::vector<Part>& waiting) {
     if (part.count <= small) return waiting.push_back(part);
     Node& node = tree_.nodes[std::size_t(part.node)];
@@ -120,7 +120,8 @@ class TreeBuilder {
     divide(node, best);
   }
 
-  // The keys lie next to each other, which takes less time than to look up each.
+  // Puts the triangles whose centroids are lower along an axis first. The keys lie next to each other, which takes less
+  // time than to look up each.
   void divide(const Node& node, int axis) {
     const std::span part(tree_.order.data() + node.first, std::size_t(node.count));
     const std::span keys(keys_.data() + node.first, part.size());

@@ -37,7 +37,8 @@ struct TriangleTree {
     std::array<std::int32_t, 4> node;
     int count;
   };
-  // Takes the children of the largest part in its place until there are four parts.
+  // Returns parts of a node. The largest part, at first the node itself, is replaced by its children until there are
+  // four parts, or it is a leaf.
   Parts four_parts(std::int32_t node) const;
 
   std::span<const std::int32_t> triangles_of(const Node& node) const {
@@ -63,7 +64,7 @@ class TreeStack {
   void push(const Entry& entry) { entries_[std::size_t(size_++)] = entry; }
   Entry pop() { return entries_[std::size_t(--size_)]; }
 
-  // Pushes an entry, but below those from a place on for which waits_for(entry, other).
+  // Pushes an entry, but below those last entries, down to the place `from`, for which waits_for(entry, other) is true.
   template <class WaitsFor>
   void push_below(int from, const Entry& entry, const WaitsFor& waits_for) {
     int place = size_++;

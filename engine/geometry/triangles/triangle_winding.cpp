@@ -49,8 +49,8 @@ inline double angle_of(double y, double x) {
 struct TriangleSoup::Packet {
   std::array<Lanes, groups> x{}, y{}, z{}, sum{};
 
-  // Adds the part's expansion where it is far away: with the gradient of the dipoles' field, I / d^3 - 3 d d' / d^5,
-  // equation 15 of the paper. Returns the lanes where it is near.
+  // Adds the expansion of a part to the places from which it is far away: with the gradient of the dipoles' field,
+  // which is I / d^3 - 3 d d' / d^5, equation 15 of the paper. Returns the active lanes of the other places.
   std::uint8_t add_far(std::size_t g, const TriangleTree::Node& node, std::uint8_t active) {
     const Mat3& m = node.moment;
     const double trace = m.trace(), reach = far * node.radius, reach2 = reach * reach;

@@ -1,7 +1,7 @@
-// Describes two edges at one time, and finds when they pass through each other while their ends move evenly. That the
-// volume of the tetrahedron of their ends changes its sign while they meet is found from the start, the end and the
-// time between (Provot 1997, "Collision and self-collision handling in cloth model dedicated to design garments", has
-// the condition).
+// Describes two edges at one time, and finds when they pass through each other while their ends move evenly: when the
+// volume of the tetrahedron of their ends changes its sign and they meet (Provot 1997, "Collision and self-collision
+// handling in cloth model dedicated to design garments", has the condition). The signs are compared after each eighth
+// of the way.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -18,8 +18,8 @@ using EdgeEnds = std::array<std::int32_t, 2>;  // two vertices
 struct TwoEdges {
   Vec3 from, other_from;  // where they begin [m]
   Vec3 way, other_way;    // to where they end [m]
-  Vec3 across;            // the product of their ways [m^2]
-  double volume;          // six times that of the tetrahedron of their ends [m^3]
+  Vec3 across;            // the cross product of both ways [m^2]
+  double volume;          // six times the signed volume of the tetrahedron of their ends [m^3]
 
   TwoEdges(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
       : from(a), other_from(c), way(b - a), other_way(d - c), across(way.cross(other_way)) {
@@ -36,10 +36,11 @@ struct TwoEdges {
   }
   // Tells whether the lines are nearer to each other than this [m].
   bool are_nearer(double distance) const { return volume * volume < distance * distance * across.squaredNorm(); }
-  // Return the shares of the edges at which their lines are closest.
+  // Returns the share of the one edge, or of the other one, at which their lines are closest.
   double share() const { return (other_from - from).cross(other_way).dot(across) / across.squaredNorm(); }
   double other_share() const { return (other_from - from).cross(way).dot(across) / across.squaredNorm(); }
-  // Tells whether both places are on the edges, or beyond by so much of their lengths.
+  // Tells whether both places are on the edges, or beyond their ends by at most this share of their lengths. Edges that
+  // are nearly parallel do not meet.
   bool meet(double beyond) const {
     if (!are_lines()) return false;
     const double s = share(), t = other_share(), end = 1 + beyond;

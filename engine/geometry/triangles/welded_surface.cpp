@@ -15,7 +15,7 @@
 namespace supple {
 namespace {
 
-// Finds the nearest of the places that were added within a distance, by a grid of cells as wide as the distance.
+// Finds the nearest place within a distance, among those that were added, by a grid of cells as wide as the distance.
 class PlaceGrid {
  public:
   explicit PlaceGrid(double reach) : reach_(reach) {}

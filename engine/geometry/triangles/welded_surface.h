@@ -1,6 +1,6 @@
 // Joins the vertices of any triangle surface that are at the same place: an STL file repeats each vertex for each of
-// its triangles, and an OBJ file does so along the seams of its texture. Nothing is moved but by the tolerance, no hole
-// is closed and nothing is turned over; solids/closed_surface.h and triangles/remesh.h do more.
+// its triangles, and an OBJ file does so along the seams of its texture. No vertex moves by more than the tolerance, no
+// hole is closed and nothing is turned over; solids/closed_surface.h and triangles/remesh.h do more.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ struct WeldedSurface {
   std::vector<std::int32_t> vertex_source;    // by vertex: one of the vertices that became it
   std::vector<std::int32_t> vertex_target;    // by vertex of the input: the one that it became; -1: none
   std::vector<std::int32_t> triangle_source;  // by triangle: the one that it was or is a part of
-  // By triangle: the vertices that its source names in their places; -1: a vertex of another triangle lies there on a
-  // side of the source.
+  // By triangle and corner: the vertex of the input that its source has there; -1: none, because a vertex of another
+  // triangle lies there on a side of the source.
   std::vector<std::array<std::int32_t, 3>> corner_source;
 };
 
