@@ -89,13 +89,13 @@ std::vector<Problem> undrawn(const SceneDef& scene) {
   return list;
 }
 
-std::vector<Warning> warnings_of(const Checked& checked) {
+std::vector<Warning> listed_warnings(const Checked& checked) {
   std::vector<Warning> list = all_warnings(checked.script, checked.bodies);
   for (Problem& later : undrawn(checked.script.scene())) {
     later.message = "supple render refuses this: " + later.message;
     list.push_back({std::nullopt, std::move(later)});
   }
-  if (auto letters = letters_warning(checked.script, caption_font(checked.script.scene().text)))
+  if (auto letters = letters_warning(checked.script, text_font(checked.script.scene().text)))
     list.push_back({std::nullopt, std::move(*letters)});
   for (const std::string& one : checked.missing)
     list.push_back({std::nullopt, {{checked.bodies.front().def.place.source}, one}});
@@ -118,7 +118,7 @@ void say_body(const Body& body, const DrawnBody& drawn, bool verbose) {
 void say_all(const Checked& checked, bool verbose) {
   const SceneDef& scene = checked.script.scene();
   for (const std::string& note : notes_of(checked)) say(stdout, fmt::format("note: {}\n", note));
-  const std::vector<Warning> all = warnings_of(checked);
+  const std::vector<Warning> all = listed_warnings(checked);
   const std::vector<Problem> list = said(all);
   for (const Problem& warning : list) say(stdout, fmt::format("warning: {}\n", warning.text()));
   const std::size_t meant = all.size() - list.size();
@@ -137,7 +137,7 @@ Json json_of(const Checked& checked) {
   const SceneDef& scene = checked.script.scene();
   Json json = {{"scene", scene.name}, {"frames", scene.frames}};
   json["warnings"] = Json::array();
-  for (const Warning& warning : warnings_of(checked)) {
+  for (const Warning& warning : listed_warnings(checked)) {
     const Json kind = warning.kind ? Json(name_of(*warning.kind)) : Json(nullptr);
     json["warnings"].push_back({{"kind", kind},
                                 {"place", warning.problem.place.text()},

@@ -299,7 +299,7 @@ int draw(DrawCommand command) {
                      fmt::format("there are {} parts (--of): 0 to {}", command.of, command.of - 1));
   LoadedDrawing drawing = load_drawing(command.plan);
   const Script& script = drawing.film.world.script();
-  if (const auto letters = letters_warning(script, caption_font(script.scene().text)); letters && !command.skins)
+  if (const auto letters = letters_warning(script, text_font(script.scene().text)); letters && !command.skins)
     say(stderr, fmt::format("warning: {}\n", letters->text()));
   if (command.skins) return write_skin_files(command, drawing);
   if (command.frame || !command.still.empty()) return draw_one(command, drawing);

@@ -35,7 +35,7 @@ void say_remarks(const FilmPlan& plan, const LoadedFilm& film) {
   }
   for (const Problem& warning : said(all_warnings(film.world.script(), film.world.bodies())))
     say(stderr, fmt::format("warning: {}\n", warning.text()));
-  if (const auto letters = letters_warning(film.world.script(), caption_font(scene.text));
+  if (const auto letters = letters_warning(film.world.script(), text_font(scene.text));
       letters && plan.pictures != FilmPictures::none)
     say(stderr, fmt::format("warning: {}\n", letters->text()));
   for (const Body& body : film.world.bodies()) {

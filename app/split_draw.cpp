@@ -154,7 +154,7 @@ int draw_split(const SplitCommand& asked) {
   const int columns = columns_of(command.layout, static_cast<int>(command.runs.size()));
   Drawn drawn;
   drawn.screen.columns = columns;
-  drawn.screen.font = caption_font();
+  drawn.screen.font = text_font();
   for (const std::string& run : command.runs) {
     draw_panel(command, run, columns, drawn);
     if (drawn.result.end == FilmEnd::failed) throw RunError(drawn.result.message);

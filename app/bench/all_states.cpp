@@ -121,7 +121,8 @@ ReportPlot profile_plot(const std::vector<MethodTimes>& list, std::size_t t) {
   return plot;
 }
 
-ReportTable profile_table(const std::vector<MethodTimes>& list, const std::string& name, const std::string& title) {
+ReportTable share_solved_table(const std::vector<MethodTimes>& list, const std::string& name,
+                               const std::string& title) {
   const std::size_t states = list.front().times.front().size();
   ReportTable table{name, title};
   table.note =
@@ -215,8 +216,8 @@ ReportSection bench_profiles(const BenchSetting& setting) {
       "The Hessian at the reference, nothing projected, has no Cholesky factor in {} of all states.",
       states_in_all, bodies, most_vertices, unsure);
   section.tables.push_back(
-      profile_table(groups[0], "profiles", "Scenes without colliders: states solved, and how often fastest"));
-  section.tables.push_back(profile_table(groups[1], "profiles-colliders", "The same, scenes with colliders"));
+      share_solved_table(groups[0], "profiles", "Scenes without colliders: states solved, and how often fastest"));
+  section.tables.push_back(share_solved_table(groups[1], "profiles-colliders", "The same, scenes with colliders"));
   section.tables.back().note +=
       " Ours, Projective Dynamics and Chebyshev's method correct directions for contacts, Newton's kin have those that "
       "touch in the Hessian, the others learn of them from L-BFGS pairs alone: these rows compare that, too.";

@@ -10,6 +10,7 @@
 #include "app/bench/sections.h"
 #include "app/bench/stability_matrix.h"
 #include "baselines/reference.h"
+#include "output/run/row_tally.h"
 #include "scene/building/warnings.h"
 #include "scene/definition/rotation.h"
 #include "sim/measures/energies.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "app/bench/fitted_exponent.h"
 #include "app/bench/sections.h"
 #include "base/timing.h"
 
@@ -93,17 +94,6 @@ Size measure(double vertices, const BenchSetting& setting) {
   return size;
 }
 
-// Returns the slope of log y over log x by least squares: the exponent p of y ~ x^p.
-double exponent_of(const std::vector<Size>& sizes, const std::function<double(const Size&)>& value) {
-  double sx = 0, sy = 0, sxx = 0, sxy = 0;
-  const auto n = double(sizes.size());
-  for (const Size& size : sizes) {
-    const double x = std::log(size.vertices), y = std::log(value(size));
-    sx += x, sy += y, sxx += x * x, sxy += x * y;
-  }
-  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
-}
-
 struct Quantity {
   const char* name;
   std::function<double(const Size&)> value;
@@ -144,7 +134,8 @@ ReportSection bench_scaling(const BenchSetting& setting) {
   ReportTable exponents{"scaling-exponents", "Exponents p of vertices^p, by least squares over all sizes"};
   exponents.columns = {"quantity", "p"};
   for (const Quantity& quantity : quantities())
-    exponents.rows.push_back({quantity.name, number_text(exponent_of(sizes, quantity.value))});
+    exponents.rows.push_back(
+        {quantity.name, number_text(fitted_exponent(sizes, std::mem_fn(&Size::vertices), quantity.value))});
   section.tables.push_back(std::move(exponents));
 
   ReportPlot plot{"scaling-step", "A step of ten iterations against the number of vertices"};

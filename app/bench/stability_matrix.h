@@ -14,9 +14,6 @@
 namespace supple {
 
 inline constexpr double usual_young = 3e4, usual_poisson = 0.35;  // of the materials of hard cases; the first in [Pa]
-// The energy from nothing over the exchanged energy above which a run breaks its rule. The program warns above a number
-// of its own (output/run/row_tally.cpp), which is the same.
-inline constexpr double much_energy = 0.2;
 
 // Lists the numbers of iterations after which the error of a case's worst step is measured.
 constexpr std::array<int, 3> tabled_iterations = {10, 50, 200};

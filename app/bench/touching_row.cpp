@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <span>
 
+#include "app/bench/fitted_exponent.h"
 #include "app/bench/sections.h"
 #include "app/bench/touching_film.h"
 #include "app/bench/touching_tables.h"
@@ -65,20 +67,6 @@ LeaningRow measure_row(int count, const BenchSetting& setting) {
   return row;
 }
 
-// Returns the slope of log ms over log x by least squares, for the count x of each row: the exponent p of ms ~ x^p. Not
-// a number for one row alone.
-template <class Count>
-double exponent(std::span<const LeaningRow> rows, const Count& count) {
-  if (rows.size() < 2) return std::nan("");
-  double sx = 0, sy = 0, sxx = 0, sxy = 0;
-  const auto n = static_cast<double>(rows.size());
-  for (const LeaningRow& row : rows) {
-    const double x = std::log(count(row)), y = std::log(row.ms);
-    sx += x, sy += y, sxx += x * x, sxy += x * y;
-  }
-  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
-}
-
 }  // namespace
 
 RowOfBodies row_of_bodies(const BenchSetting& setting) {
@@ -112,8 +100,9 @@ RowOfBodies row_of_bodies(const BenchSetting& setting) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const LeaningRow& row = rows[i];
     const std::span<const LeaningRow> so_far(rows.data(), i + 1);
-    const double of_bodies = exponent(so_far, [](const LeaningRow& r) { return r.bodies; });
-    const double of_contacts = exponent(so_far, [](const LeaningRow& r) { return r.all_contacts(); });
+    const double of_bodies = fitted_exponent(so_far, std::mem_fn(&LeaningRow::bodies), std::mem_fn(&LeaningRow::ms));
+    const double of_contacts =
+        fitted_exponent(so_far, std::mem_fn(&LeaningRow::all_contacts), std::mem_fn(&LeaningRow::ms));
     table.rows.push_back({std::to_string(row.bodies), std::to_string(row.island), std::to_string(row.vertices),
                           std::to_string(row.contacts), std::to_string(row.collider_contacts), number_text(row.ms),
                           number_text(row.ms / row.bodies), number_text(row.trials), number_text(of_bodies),

@@ -57,7 +57,7 @@ int sheet_columns(const SweepDef& sweep, std::size_t pictures) {
 
 // Writes the contact sheet. Returns false when no point has a picture.
 bool write_sheet(const SweepRequest& request, const std::string& title, const std::vector<PointResult>& results) {
-  Sheet sheet{title, {}, sheet_columns(request.sweep, std::min(results.size(), most_pictures)), caption_font()};
+  Sheet sheet{title, {}, sheet_columns(request.sweep, std::min(results.size(), most_pictures)), text_font()};
   const std::vector<std::string> names = short_names(request.sweep);
   bool any = false;
   for (std::size_t point = 0; point < std::min(results.size(), most_pictures); ++point) {

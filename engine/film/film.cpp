@@ -66,7 +66,7 @@ void check_pictures_asked(const FilmPlan& plan, const LoadedFilm& film) {
   if (plan.wants_video()) coding_for(plan.coding, scene);
   if (plan.pictures != FilmPictures::none) {
     check_passes(scene);
-    (void)caption_font(scene.text);  // refuses a family that is not installed
+    (void)text_font(scene.text);  // refuses a family that is not installed
   }
   if (plan.film_only && plan.coding.format == FilmFormat::png)
     throw InputError("--film-only", "leaves a film, and --format png makes none");
@@ -232,7 +232,7 @@ FilmResult make_film(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
   const bool has_files = plan.pictures == FilmPictures::all && !plan.film_only && !result.rows.empty();
   if (plan.stills && begun && has_files) make_stills(plan, scene, folder, result);
   if (plan.pictures != FilmPictures::none) {
-    if (const auto letters = letters_warning(film.world.script(), caption_font(scene.text)))
+    if (const auto letters = letters_warning(film.world.script(), text_font(scene.text)))
       result.tally.remark(letters->text());
   }
   return result;

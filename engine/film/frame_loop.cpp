@@ -160,7 +160,7 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
       errors_(film.world, solvers, threads_) {
   if (plan.pictures != FilmPictures::none) {
     drawn_.emplace(world_.script(), world_.bodies(), std::move(film.drawn), world_.colliders(),
-                   caption_font(world_.script().scene().text));
+                   text_font(world_.script().scene().text));
     if (!film.info.framed.empty()) drawn_->frame_motion(film.info.framed);
   }
   world_.start(solvers.steps, &threads_);
@@ -208,7 +208,7 @@ void FrameLoop::change_look(const std::vector<std::string>& settings) {
   std::vector<DrawnBody>& drawn = as_elements ? elements_ : skins_;
   if (drawn.empty())
     drawn = drawn_bodies(world_.bodies(), {UserCache::of_user(), {}}, as_elements ? DrawnAs::elements : DrawnAs::skin);
-  DrawnFilm film(script, world_.bodies(), drawn, world_.colliders(), caption_font(script.scene().text));
+  DrawnFilm film(script, world_.bodies(), drawn, world_.colliders(), text_font(script.scene().text));
   drawn_.emplace(std::move(film));
   look_ = script.scene();
   last_motion_.clear();

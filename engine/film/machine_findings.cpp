@@ -69,7 +69,7 @@ Finding tool(const std::string& name, const char* option, bool needed, const cha
 }
 
 Finding font() {
-  const std::string file = caption_font().file;
+  const std::string file = text_font().file;
   return {"font",      !file.empty(), false, file.empty() ? "none is installed" : file, "captions in the pictures",
           "fonts-lato"};
 }

@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
-#include "render/caption.h"
 #include "render/legend.h"
 #include "render/projection.h"
+#include "render/text_bitmap.h"
 
 namespace supple {
 namespace {
@@ -41,7 +41,7 @@ void Captions::renew(std::size_t mesh, const std::string& label) {
 }
 
 int Captions::width_of(const std::string& text, int em) const {
-  return text.empty() ? 0 : draw_caption(font_, text, em).width;
+  return text.empty() ? 0 : draw_text(font_, text, em).width;
 }
 
 // Returns the pixel below which a body's caption stands; nothing behind the eye. The caption stands on the ground: for
@@ -95,10 +95,10 @@ std::optional<Captions::Anchor> Captions::anchor_of(const Projection& project, c
 // [pixels]; nothing where one has no place.
 std::optional<double> Captions::try_size(const Camera& camera, int em, const Demand& demand) {
   const Projection project(camera, around_, width_, height_);
-  const int line = draw_caption(font_, "X", em).height, halo = Sticker::halo(em);
+  const int line = draw_text(font_, "X", em).height, halo = Sticker::halo(em);
   const int note_em = std::max(8, static_cast<int>(std::lround(note_size * em)));
   const int note_width = width_of(note_template_, note_em);
-  const int height = line + 2 * halo + (note_template_.empty() ? 0 : draw_caption(font_, "X", note_em).height);
+  const int height = line + 2 * halo + (note_template_.empty() ? 0 : draw_text(font_, "X", note_em).height);
   std::vector<WantedCaption> wanted;
   std::vector<Outline> bodies;
   placed_.clear();
@@ -262,7 +262,7 @@ void Captions::draw(Image& image, const DrawList& list, const PixelRect& subtitl
     if (placed_[i].mesh >= list.notes.size() || list.notes[placed_[i].mesh].empty()) continue;
     const std::string& text = list.notes[placed_[i].mesh];
     const int halo = Sticker::halo(note_em), width = width_of(text, note_em);
-    Sticker note(width + 2 * halo, draw_caption(font_, "X", note_em).height + 2 * halo);
+    Sticker note(width + 2 * halo, draw_text(font_, "X", note_em).height + 2 * halo);
     note.text_with_halo(font_, text, note_em, halo, halo, ink_);
     note.onto(image, place.x + (place.width - note.width()) / 2, place.bottom() - note.height() + halo);
   }

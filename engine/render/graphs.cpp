@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "render/caption.h"
+#include "render/text_bitmap.h"
 
 namespace supple {
 namespace {
@@ -27,11 +27,11 @@ GraphLayout layout_of(const GraphLook& graph, const Stage& stage) {
   const int height = height_for_letters(stage.width, stage.height);
   layout.em = std::max(9, static_cast<int>(std::lround(height / 40.0)));
   layout.pad = std::max(4, layout.em / 2);
-  const CaptionBitmap title = draw_caption(stage.font, graph.title, layout.em);
+  const TextBitmap title = draw_text(stage.font, graph.title, layout.em);
   layout.line = title.height;
   layout.title = title.width;
   for (const auto& [place, value] : graph.ticks)
-    layout.labels = std::max(layout.labels, draw_caption(stage.font, value, layout.em).width);
+    layout.labels = std::max(layout.labels, draw_text(stage.font, value, layout.em).width);
   layout.plot_width = static_cast<int>(std::min(0.28 * height, 0.22 * stage.width));
   layout.plot_height = static_cast<int>(0.11 * height);
   return layout;
@@ -55,7 +55,7 @@ Sticker plate_of(const GraphLook& graph, const Stage& stage) {
     const int row = inside.y + static_cast<int>(std::lround((1 - place) * (inside.height - 1)));
     plate.fill({inside.x, row - mark / 2, inside.width, mark}, grid);
     if (!all && place > 0 && place < 1) continue;
-    const CaptionBitmap label = draw_caption(stage.font, value, layout.em);
+    const TextBitmap label = draw_text(stage.font, value, layout.em);
     plate.text(stage.font, value, layout.em, layout.pad + layout.labels - label.width, row - layout.line / 2, ink);
   }
   return plate;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/caption.h"
+#include "render/text_bitmap.h"
 
 namespace supple {
 namespace {
@@ -20,13 +20,13 @@ struct LegendLayout {
 LegendLayout layout_of(const FieldLook& field, const Font& font, int picture_height) {
   LegendLayout layout{};
   layout.em = std::max(9, static_cast<int>(std::lround(picture_height / 36.0)));
-  const CaptionBitmap title = draw_caption(font, field.title, layout.em);
+  const TextBitmap title = draw_text(font, field.title, layout.em);
   layout.line = title.height;
   layout.pad = std::max(4, layout.em / 2);
   layout.bar_width = std::max(6, layout.em * 3 / 4);
   layout.bar_height = static_cast<int>(0.4 * picture_height);
   for (const auto& [place, value] : field.ticks)
-    layout.labels = std::max(layout.labels, draw_caption(font, value, layout.em).width);
+    layout.labels = std::max(layout.labels, draw_text(font, value, layout.em).width);
   layout.width = 2 * layout.pad + std::max(title.width, layout.bar_width + layout.pad + layout.labels);
   layout.height = layout.bar_top() + layout.bar_height + layout.line / 2 + layout.pad;
   return layout;
@@ -74,11 +74,11 @@ Sticker headline_of(const Stage& stage, const std::string& text) {
   const int height = height_for_letters(stage.width, stage.height), room = stage.width - 2 * overlay_margin(stage);
   int em = std::max(smallest, static_cast<int>(std::lround(height / 32.0)));
   const auto wide = [&] {
-    return draw_caption(stage.font, stage.headline_template, em).width + 2 * Sticker::halo(em) > room;
+    return draw_text(stage.font, stage.headline_template, em).width + 2 * Sticker::halo(em) > room;
   };
   while (em > smallest && wide()) --em;
   const int halo = Sticker::halo(em);
-  const CaptionBitmap bitmap = draw_caption(stage.font, text, em);
+  const TextBitmap bitmap = draw_text(stage.font, text, em);
   Sticker line(bitmap.width + 2 * halo, bitmap.height + 2 * halo);
   line.text_with_halo(stage.font, text, em, halo, halo, ink_on(stage));
   return line;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/caption.h"
+#include "render/text_bitmap.h"
 
 namespace supple {
 
@@ -40,7 +40,7 @@ void Sticker::plate(const PixelRect& area, double radius, const Vec3& color, dou
 }
 
 void Sticker::text(const Font& font, const std::string& text, int pixels, int x, int y, const Vec3& color) {
-  const CaptionBitmap bitmap = draw_caption(font, text, pixels);
+  const TextBitmap bitmap = draw_text(font, text, pixels);
   for (int row = 0; row < bitmap.height; ++row) {
     for (int column = 0; column < bitmap.width; ++column)
       cover(x + column, y + row, color, bitmap.coverage[std::size_t(row) * bitmap.width + column] / 255.0);
@@ -48,7 +48,7 @@ void Sticker::text(const Font& font, const std::string& text, int pixels, int x,
 }
 
 void Sticker::text_with_halo(const Font& font, const std::string& text, int pixels, int x, int y, const Vec3& color) {
-  const CaptionBitmap bitmap = draw_caption(font, text, pixels);
+  const TextBitmap bitmap = draw_text(font, text, pixels);
   const Vec3 around = color.mean() < 0.5 ? Vec3(0.97, 0.97, 0.96) : Vec3(0.06, 0.06, 0.07);
   const int reach = halo(pixels);
   const auto coverage = [&bitmap](int column, int row) {

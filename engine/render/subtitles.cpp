@@ -4,8 +4,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "render/caption.h"
 #include "render/code_points.h"
+#include "render/text_bitmap.h"
 
 namespace supple {
 namespace {
@@ -61,7 +61,7 @@ std::vector<Piece> narrowed(const Font& font, const std::vector<Piece>& pieces, 
     Piece part;
     for (const char32_t point : code_points(piece.text)) {
       const std::string longer = part.text + in_utf8(point);
-      if (!part.text.empty() && draw_caption(font, longer, em).width > width) {
+      if (!part.text.empty() && draw_text(font, longer, em).width > width) {
         result.push_back(part);
         part.text.clear();
       }
@@ -94,7 +94,7 @@ std::vector<std::string> filled(const std::vector<Piece>& pieces, double width, 
 
 std::vector<std::string> wrapped_paragraph(const Font& font, const std::string& text, int em, int width) {
   // A bitmap is wider than its letters by a pixel at either side.
-  const auto reach = [&](const std::string& words) { return draw_caption(font, words, em).width - 2.0; };
+  const auto reach = [&](const std::string& words) { return draw_text(font, words, em).width - 2.0; };
   if (reach(text) <= width) return {text};
   std::vector<Piece> pieces = pieces_of(text);
   const bool too_wide = std::ranges::any_of(pieces, [&](const Piece& one) { return reach(one.text) > width; });
@@ -127,7 +127,7 @@ Subtitles::Subtitles(const Stage& stage) : font_(stage.font), width_(stage.width
   const int largest = std::max(10, static_cast<int>(std::lround(height / 22.0))), smallest = std::max(8, largest / 2);
   PixelRect block;
   for (em_ = largest;; --em_) {
-    line_ = draw_caption(font_, "X", em_).height;
+    line_ = draw_text(font_, "X", em_).height;
     block = {};
     for (const std::string& text : stage.subtitles) {
       const Sticker one = sticker_of(text);
@@ -142,7 +142,7 @@ Subtitles::Subtitles(const Stage& stage) : font_(stage.font), width_(stage.width
 Sticker Subtitles::sticker_of(const std::string& text) const {
   const std::vector<std::string> lines = wrapped(font_, text, em_, line_width(width_, em_));
   std::vector<int> widths;
-  for (const std::string& line : lines) widths.push_back(draw_caption(font_, line, em_).width);
+  for (const std::string& line : lines) widths.push_back(draw_text(font_, line, em_).width);
   const int pad = std::max(2, em_ / 2), air = std::max(1, em_ / 8);
   const int width = *std::ranges::max_element(widths) + 2 * pad, height = int(lines.size()) * line_ + 2 * air;
   Sticker sticker(width, height);

@@ -2,15 +2,16 @@
 // backward Euler loses nearly all of what swings within a body; a scene can ask for the share of its speed that a body
 // keeps at least (`contact.restitution` of a body, `restitution` of a collider).
 //
-// The law is Poisson's (Stronge 2000, "Impact Mechanics", section 3.2.2): the push while two bodies leave each other is
-// the one while they came together, times the coefficient. What counts is their motion as a whole (rigid_motion.h) at
-// the place where they touch, along the mean normal there. Each step of the approach takes a share of their speed. Once
-// they no longer come together, the steps that follow give these shares back in the reverse order, times the
-// coefficient: a stiff ball leaves the ground at once, and a soft one takes as long as it took to be pressed flat. What
-// elasticity gives by itself in these steps is not given a second time. The gift is an impulse on both bodies, at the
-// place where they touch, with the friction that belongs to it; so momentum is kept, and a bar that lands on its end
-// begins to turn. Impulses of all that touch in an island are found together: many tiles are as one floor, and a ball
-// bounces off a light mat that lies on the ground. The energy is counted (Bounces::given).
+// The law is Newton's: two bodies leave each other at least at the speed with which they came together, times the
+// coefficient. As in Poisson's law (Stronge 2000, "Impact Mechanics", section 3.2.2), this takes as long as their
+// coming together. What counts is their motion as a whole (rigid_motion.h) at the place where they touch, along the
+// mean normal there. Each step of the approach takes a share of their speed. Once they no longer come together, the
+// steps that follow give these shares back in the reverse order, times the coefficient: a stiff ball leaves the ground
+// at once, and a soft one takes as long as it took to be pressed flat. What elasticity gives by itself in these steps
+// is not given a second time. The gift is an impulse on both bodies, at the place where they touch, with the friction
+// that belongs to it; so momentum is kept, and a bar that lands on its end begins to turn. Impulses of all that touch
+// in an island are found together: many tiles are as one floor, and a ball bounces off a light mat that lies on the
+// ground. The energy is counted (Bounces::given).
 //
 // What comes together more slowly than the speed that gravity gives in two steps and a hundredth of the body's size in
 // a second, added up, does not bounce, as in Mueller, Macklin, Chentanez, Jeschke, Kim 2020, "Detailed rigid body

@@ -331,11 +331,11 @@ TEST(ContactSheet, ShowsPicturesInOrderAndSaysWhatIsMissing) {
 }
 
 TEST(ContactSheet, ShowsTheValueAloneWhereItsNameDoesNotFit) {
-  if (caption_font().empty()) GTEST_SKIP() << "no font for captions here";
+  if (text_font().empty()) GTEST_SKIP() << "no font for captions here";
   const test::TemporaryFolder folder;
   write_png(folder.path / "a.png", 200, 100, std::vector<std::uint8_t>(200 * 100 * 3, 0));
   const auto sheet_with = [&](const std::string& words) {
-    return compose({"", {{folder.path / "a.png", "", {words}}}, 1, caption_font()}).rgb;
+    return compose({"", {{folder.path / "a.png", "", {words}}}, 1, text_font()}).rgb;
   };
   const auto value = sheet_with("[0, -9, 0]");
   EXPECT_EQ(sheet_with("a_name_that_leaves_no_room = [0, -9, 0]"), value);

@@ -8,8 +8,8 @@
 
 #include "base/convex_hull.h"
 #include "film/pictures/camera.h"
-#include "film/pictures/draw_scene.h"
 #include "film/pictures/film_graphs.h"
+#include "film/pictures/film_stage.h"
 #include "film/pictures/surface_field.h"
 #include "film/plan/shipped_files.h"
 #include "render/captions.h"
@@ -82,7 +82,7 @@ LaidOut laid_out(const SceneDef& scene) {
   const std::vector<Body> bodies = assemble(scene);
   const CollisionSet set = collision_set(scene);
   LaidOut result = {make_stage(scene, bodies, std::vector<DrawnBody>(bodies.size()), set.scene_colliders,
-                               collider_skins(set.scene_colliders, bodies), caption_font()),
+                               collider_skins(set.scene_colliders, bodies), text_font()),
                     {}};
   result.stage.first_camera = camera_at(scene, result.stage, 0);
   result.captions = Captions(result.stage).places(result.stage.first_camera);
@@ -113,7 +113,7 @@ SceneDef shipped_at(const std::string& name, const Size& size) {
 
 // These bodies stand on the ground, so that captions belong right below them.
 TEST(Captions, InAPictureTallerThanWideStandBelowTheirOwnBodies) {
-  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  if (text_font().empty()) GTEST_SKIP() << "no font is installed";
   for (const Size size : {Size{720, 1280}, Size{1080, 1920}}) {
     for (const char* name : {"squirrel", "materials", "strain-limiting"}) {
       const LaidOut picture = laid_out(shipped_at(name, size));
@@ -136,7 +136,7 @@ TEST(Captions, InAPictureTallerThanWideStandBelowTheirOwnBodies) {
 }
 
 TEST(Captions, OfBodiesThatSlideTowardsTheEyeStandAboveTheirBoards) {
-  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  if (text_font().empty()) GTEST_SKIP() << "no font is installed";
   for (const Size size : {Size{640, 360}, Size{1920, 1080}, Size{3840, 2160}}) {
     const LaidOut picture = laid_out(shipped_at("slopes", size));
     ASSERT_EQ(picture.captions.size(), 3u);
@@ -165,7 +165,7 @@ const std::string table =
     "[[collider]]\nname = \"table\"\nshape = { box = { extent = [0.8, 0.1, 0.8] } }\nposition = [0, 0.45, 0]\n";
 
 TEST(Captions, OfABodyOnATableStandBelowTheTable) {
-  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  if (text_font().empty()) GTEST_SKIP() << "no font is installed";
   const LaidOut picture = laid_out(cube_at(0.5, table));
   ASSERT_EQ(picture.captions.size(), 1u);
   EXPECT_GE(picture.captions[0].place.y, Ends(picture.outline_of(1)).bottom);
@@ -174,7 +174,7 @@ TEST(Captions, OfABodyOnATableStandBelowTheTable) {
 }
 
 TEST(Captions, OfBodiesThatShareAColliderStandBelowThem) {
-  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  if (text_font().empty()) GTEST_SKIP() << "no font is installed";
   const std::string other =
       "[[body]]\nname = \"other\"\nbox = { extent = [0.2, 0.2, 0.2], cells = [1, 1, 1] }\nmaterial = \"rubber\"\n"
       "position = [0.25, 0.5, 0]\n";
@@ -184,7 +184,7 @@ TEST(Captions, OfBodiesThatShareAColliderStandBelowThem) {
 }
 
 TEST(Captions, KeepToTheirBodyWhereTheColliderLeavesThePicture) {
-  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  if (text_font().empty()) GTEST_SKIP() << "no font is installed";
   const std::string camera = "[camera]\nposition = [0, 1, 2]\ntarget = [0, 0.5, 0]\n";
   const std::string floor =
       "[[collider]]\nname = \"floor\"\nshape = { box = { extent = [20, 2, 20] } }\nposition = [0, -0.5, 0]\n";
@@ -209,7 +209,7 @@ Camera moved_by(Camera camera, const Vec3& way) {
 }
 
 TEST(Captions, OfTheBodyThatTheCameraFollowsStayInThePicture) {
-  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  if (text_font().empty()) GTEST_SKIP() << "no font is installed";
   for (const char* size : {"[output]\nwidth = 640\nheight = 360\n", "[output]\nwidth = 1080\nheight = 1920\n"}) {
     LaidOut picture = laid_out(cube_at(1.5, size));
     picture.stage.camera_moves = true;
@@ -226,7 +226,7 @@ TEST(Captions, OfTheBodyThatTheCameraFollowsStayInThePicture) {
 
 // A body falls to the ground, where its caption waits for it, whichever way the camera goes meanwhile.
 TEST(Captions, KeepClearOfAFallenBodyWhereTheCameraMoves) {
-  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  if (text_font().empty()) GTEST_SKIP() << "no font is installed";
   LaidOut picture = laid_out(cube_at(1.5, ""));
   picture.stage.camera_moves = true;
   Bounds fallen = picture.stage.meshes[0].rest;
@@ -249,7 +249,7 @@ class CaptionsOfScene : public testing::TestWithParam<std::string> {};
 
 // Neither skins nor models are needed: captions keep clear of the bodies' boxes at the start.
 TEST_P(CaptionsOfScene, OverlapNeitherEachOtherNorABodyAtAnySize) {
-  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  if (text_font().empty()) GTEST_SKIP() << "no font is installed";
   for (const Size size : {Size{640, 360}, Size{1280, 720}, Size{3840, 2160}, Size{1080, 1920}}) {
     const SceneDef scene = shipped_at(GetParam(), size);
     const LaidOut picture = laid_out(scene);
@@ -285,7 +285,7 @@ void expect_apart(const std::vector<PixelRect>& texts, const Size& size) {
 
 // Graphs find a place beside all other texts that can be switched on, and cost no body its caption.
 TEST_P(CaptionsOfScene, LeaveAllOtherTextsFree) {
-  const Font font = caption_font();
+  const Font font = text_font();
   if (font.empty()) GTEST_SKIP() << "no font is installed";
   for (const Size size : {Size{640, 360}, Size{1280, 720}, Size{3840, 2160}, Size{1080, 1920}}) {
     for (const bool notes : {false, true}) {
@@ -321,7 +321,7 @@ TEST_P(CaptionsOfScene, LeaveAllOtherTextsFree) {
 // Captions keep clear of subtitles where they can stay beside their bodies; elsewhere they are where they would be
 // without, and those that a subtitle covers are not drawn below it.
 TEST_P(CaptionsOfScene, LeaveSubtitlesTheirPlace) {
-  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  if (text_font().empty()) GTEST_SKIP() << "no font is installed";
   for (const Size size : {Size{640, 360}, Size{1920, 1080}, Size{1080, 1920}}) {
     LaidOut picture = laid_out(shipped_at(GetParam(), size));
     picture.stage.subtitles = {"What is said here has a line of usual length"};
@@ -352,7 +352,7 @@ TEST_P(CaptionsOfScene, LeaveSubtitlesTheirPlace) {
 std::vector<PixelRect> texts_with_legend(const SceneDef& scene, const std::vector<Body>& bodies, Stage& stage) {
   const CollisionSet set = collision_set(scene);
   stage = make_stage(scene, bodies, std::vector<DrawnBody>(bodies.size()), set.scene_colliders,
-                     collider_skins(set.scene_colliders, bodies), caption_font());
+                     collider_skins(set.scene_colliders, bodies), text_font());
   stage.field = SurfaceField(scene, bodies).look();
   stage.kept_free = legend_room(stage);
   stage.first_camera = camera_at(scene, stage, 0);
@@ -365,7 +365,7 @@ std::vector<PixelRect> texts_with_legend(const SceneDef& scene, const std::vecto
 // A legend costs no body its caption: cameras that frame the bodies leave room for it. Only where eleven captions with
 // notes stand side by side, 640 pixels are too few for them.
 TEST_P(CaptionsOfScene, AllStayBesideALegend) {
-  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  if (text_font().empty()) GTEST_SKIP() << "no font is installed";
   const std::filesystem::path file = test::assets / "scenes" / (GetParam() + ".toml");
   const std::vector<Body> bodies = assemble(load_scene(file, test::assets, {}));
   for (const Size size : {Size{640, 360}, Size{1280, 720}, Size{3840, 2160}}) {

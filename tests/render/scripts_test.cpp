@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <numeric>
 
-#include "render/caption.h"
 #include "render/code_points.h"
 #include "render/font_search.h"
 #include "render/subtitles.h"
+#include "render/text_bitmap.h"
 
 namespace supple {
 namespace scripts_test {
@@ -28,10 +28,10 @@ class Scripts : public testing::Test {
   }
 };
 
-int darkness(const CaptionBitmap& bitmap) { return std::accumulate(bitmap.coverage.begin(), bitmap.coverage.end(), 0); }
+int darkness(const TextBitmap& bitmap) { return std::accumulate(bitmap.coverage.begin(), bitmap.coverage.end(), 0); }
 
 // Returns the columns of a bitmap from one to before another, row after row.
-std::vector<std::uint8_t> columns(const CaptionBitmap& bitmap, int from, int to) {
+std::vector<std::uint8_t> columns(const TextBitmap& bitmap, int from, int to) {
   std::vector<std::uint8_t> part;
   for (int row = 0; row < bitmap.height; ++row)
     for (int column = from; column < to; ++column)
@@ -50,19 +50,18 @@ TEST_F(Scripts, LettersOfTheFontAreDrawnByItAlone) {
                                        "e")
                   .empty());
   // Without kerning, a text is as wide as its letters.
-  const auto width = [](const std::string& text) { return draw_caption(lato, text, 32).width - 2; };
+  const auto width = [](const std::string& text) { return draw_text(lato, text, 32).width - 2; };
   EXPECT_EQ(width("AVATAR"), 3 * width("A") + width("V") + width("T") + width("R"));
 }
 
 TEST_F(Scripts, CharactersThatTheFontLacksComeFromOthers) {
   if (!font_with(U'\u6f22')) GTEST_SKIP() << "no font with ideographs is installed";
   EXPECT_TRUE(characters_without_glyph(lato, "A " + han).empty());
-  const CaptionBitmap box = draw_caption(lato, nobodys, 32), one = draw_caption(lato, han, 32),
-                      other = draw_caption(lato, ji, 32);
+  const TextBitmap box = draw_text(lato, nobodys, 32), one = draw_text(lato, han, 32), other = draw_text(lato, ji, 32);
   EXPECT_NE(one.coverage, box.coverage);
   EXPECT_NE(one.coverage, other.coverage);
   EXPECT_GT(darkness(one), 1000);
-  EXPECT_EQ(one.height, draw_caption(lato, "X", 32).height) << "a line is as high as those of its font";
+  EXPECT_EQ(one.height, draw_text(lato, "X", 32).height) << "a line is as high as those of its font";
 }
 
 TEST_F(Scripts, WhatNoFontHasIsNamedOnce) {
@@ -76,7 +75,7 @@ TEST_F(Scripts, WhatNoFontHasIsNamedOnce) {
 
 TEST_F(Scripts, LettersRunInTheDirectionOfTheirScript) {
   if (!font_with(U'\u05d0')) GTEST_SKIP() << "no font with Hebrew is installed";
-  const CaptionBitmap word = draw_caption(lato, alef + bet, 40), last = draw_caption(lato, bet, 40);
+  const TextBitmap word = draw_text(lato, alef + bet, 40), last = draw_text(lato, bet, 40);
   EXPECT_EQ(columns(word, 0, last.width - 2), columns(last, 0, last.width - 2))
       << "the second letter is not at the left";
 }
@@ -84,15 +83,15 @@ TEST_F(Scripts, LettersRunInTheDirectionOfTheirScript) {
 TEST_F(Scripts, LettersJoin) {
   if (!font_with(U'\u0633')) GTEST_SKIP() << "no font with Arabic is installed";
   int apart = 0;
-  for (const char32_t point : code_points(arabic)) apart += draw_caption(lato, in_utf8(point), 40).width - 2;
-  EXPECT_LT(draw_caption(lato, arabic, 40).width - 2, 0.9 * apart);
+  for (const char32_t point : code_points(arabic)) apart += draw_text(lato, in_utf8(point), 40).width - 2;
+  EXPECT_LT(draw_text(lato, arabic, 40).width - 2, 0.9 * apart);
 }
 
 TEST_F(Scripts, LettersOfOtherFontsStayWithinTheLine) {
   const std::string stacked = "\xe0\xb8\x99\xe0\xb9\x89\xe0\xb8\xb3" + han + arabic;
   for (const int em : {9, 22, 40, 90}) {
-    const CaptionBitmap bitmap = draw_caption(lato, stacked, em);
-    EXPECT_EQ(bitmap.height, draw_caption(lato, "X", em).height);
+    const TextBitmap bitmap = draw_text(lato, stacked, em);
+    EXPECT_EQ(bitmap.height, draw_text(lato, "X", em).height);
     EXPECT_EQ(std::ranges::count_if(columns(bitmap, 0, bitmap.width), [](int c) { return c > 0; }) > 0, true);
   }
 }
@@ -108,7 +107,7 @@ TEST_F(Scripts, FamiliesAreFoundByTheirNames) {
 
 TEST_F(Scripts, LinesAreBrokenAtSpacesIntoEqualParts) {
   const std::string text = "The quick brown fox jumps over the lazy dog";
-  const auto reach = [](const std::string& line) { return draw_caption(lato, line, 20).width - 2; };
+  const auto reach = [](const std::string& line) { return draw_text(lato, line, 20).width - 2; };
   const int width = reach(text) * 6 / 10;
   const std::vector<std::string> lines = wrapped(lato, text, 20, width);
   ASSERT_EQ(lines.size(), 2u);
@@ -125,7 +124,7 @@ TEST_F(Scripts, AWordThatIsWiderThanALineIsBroken) {
   EXPECT_GT(lines.size(), 2u);
   std::string together;
   for (const std::string& line : lines) {
-    EXPECT_LE(draw_caption(lato, line, 20).width, 302);
+    EXPECT_LE(draw_text(lato, line, 20).width, 302);
     together += line;
   }
   EXPECT_EQ(std::ranges::count(together, 'm'), 60);
@@ -136,7 +135,7 @@ TEST_F(Scripts, IdeographsAreBrokenAnywhereButBeforeAStop) {
   std::string text;
   for (int i = 0; i < 9; ++i) text += i % 2 == 0 ? han : ji;
   const std::string stop = "\xe3\x80\x82";
-  const int wide = draw_caption(lato, text, 20).width - 2;
+  const int wide = draw_text(lato, text, 20).width - 2;
   const std::vector<std::string> lines = wrapped(lato, text + stop, 20, wide + 2);
   ASSERT_EQ(lines.size(), 2u);
   for (const std::string& line : lines) EXPECT_FALSE(line.starts_with(stop)) << line;

@@ -9,7 +9,7 @@
 #include "geometry/meshes/mesh.h"
 #include "scene/definition/air_of_body.h"
 #include "scene/replay/script_trial.h"
-#include "sim/air/closed_surface.h"
+#include "sim/air/enclosed_volume.h"
 #include "sim/measures/energies.h"
 #include "support/bodies.h"
 #include "support/energy_watch.h"

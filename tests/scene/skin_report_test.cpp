@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "film/pictures/draw_scene.h"
+#include "film/pictures/film_stage.h"
 #include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 

@@ -187,6 +187,29 @@ TEST(FaceContact, SurfacesStayAboveWhatIsFinerThanTheirCells) {
   }
 }
 
+// The way to the tine that is nearest to a triangle's middle says nothing of the other tines, where a fork is one
+// piece: blended by next to nothing, it must give the contacts that it gives as three posts.
+TEST(FaceContact, PiecesWithHollowsAreFoundFromAllSides) {
+  int of_posts = 0, of_one_piece = 0;
+  for (const double blend : {0.0, 1e-9}) {
+    Shape fork;
+    for (const double aside : {-0.05, 0.01, 0.034}) {
+      ShapePart part{Capsule{Vec3(aside, -1, 0.01 + aside), Vec3(aside, -0.003, 0.01 + aside), 0.003}};
+      part.blend = blend;
+      fork.root.parts.push_back(part);
+    }
+    ASSERT_EQ(pieces_of(fork).size(), blend > 0 ? 1u : 3u);
+    for (int i = 0; i < 40; ++i) {
+      FaceScene scene(cube(3), {{"fork", fork}}, Vec3(0.003 * (i % 8), 0.0998, 0.013 * (i / 8)));
+      scene.inputs.gravity.setZero();
+      prepare(scene);
+      (blend > 0 ? of_one_piece : of_posts) += touching_faces(scene);
+    }
+  }
+  EXPECT_GT(of_posts, 50);
+  EXPECT_EQ(of_one_piece, of_posts);
+}
+
 // Vertices of the cloth land beside the bars' edges, and rest in bars that have little room for what a step does
 // freely.
 TEST(FaceContact, AClothInShortStepsStaysWholeOnBarsBetweenItsVertices) {

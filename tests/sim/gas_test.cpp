@@ -10,7 +10,7 @@
 #include "baselines/reference.h"
 #include "geometry/meshes/cloth.h"
 #include "geometry/tetrahedra/tetrahedralize.h"
-#include "sim/air/closed_surface.h"
+#include "sim/air/enclosed_volume.h"
 #include "sim/measures/energies.h"
 #include "sim/solver/begin_step.h"
 #include "sim/solver/hessian_matrix.h"

@@ -13,7 +13,7 @@
 #include "base/timing.h"
 #include "base/trace.h"
 #include "film/pictures/camera.h"
-#include "film/pictures/draw_scene.h"
+#include "film/pictures/film_stage.h"
 #include "film/plan/shipped_files.h"
 #include "output/files/png_file.h"
 #include "render/renderer.h"
@@ -52,10 +52,10 @@ Take simulate(const std::filesystem::path& path, int frames, const std::vector<s
   std::vector<DrawnBody> drawn = drawn_bodies(bodies);
   const std::vector<Skin> colliders = collider_skins(set.scene_colliders, bodies);
   Take take;
-  const Stage fine = make_stage(scene, bodies, drawn, set.scene_colliders, colliders, caption_font());
+  const Stage fine = make_stage(scene, bodies, drawn, set.scene_colliders, colliders, text_font());
   const Camera camera = camera_at(scene, fine, 0);
   fit_to_cameras(drawn, bodies, {camera}, scene.output.height);
-  take.stage = make_stage(scene, bodies, drawn, set.scene_colliders, colliders, caption_font());
+  take.stage = make_stage(scene, bodies, drawn, set.scene_colliders, colliders, text_font());
   for (int frame = 0; frame < frames; ++frame) {
     world.play(frame);
     if (frame + 4 < frames) continue;

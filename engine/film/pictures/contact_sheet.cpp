@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "render/caption.h"
+#include "render/text_bitmap.h"
 
 namespace supple {
 namespace {
@@ -68,7 +68,7 @@ class Canvas {
     }
   }
 
-  void write(int left, int top, const CaptionBitmap& words, const Color& color) {
+  void write(int left, int top, const TextBitmap& words, const Color& color) {
     for (int y = 0; y < words.height; ++y)
       for (int x = 0; x < words.width; ++x)
         blend(left + x, top + y, color, words.coverage[std::size_t(y) * words.width + x]);
@@ -87,13 +87,13 @@ class Canvas {
   PngImage image_;
 };
 
-CaptionBitmap bitmap_of(const Sheet& sheet, const std::string& words, int pixels) {
-  return sheet.font.empty() || words.empty() ? CaptionBitmap{} : draw_caption(sheet.font, words, pixels);
+TextBitmap bitmap_of(const Sheet& sheet, const std::string& words, int pixels) {
+  return sheet.font.empty() || words.empty() ? TextBitmap{} : draw_text(sheet.font, words, pixels);
 }
 
 // Draws as many of the words as fit, and "…" in the place of the rest.
-CaptionBitmap fitted(const Sheet& sheet, const std::string& words, int pixels, int width) {
-  CaptionBitmap bitmap = bitmap_of(sheet, words, pixels);
+TextBitmap fitted(const Sheet& sheet, const std::string& words, int pixels, int width) {
+  TextBitmap bitmap = bitmap_of(sheet, words, pixels);
   for (std::string rest = words; bitmap.width > width && !rest.empty();) {
     rest.pop_back();
     while (!rest.empty() && (static_cast<unsigned char>(rest.back()) & 0xC0) == 0x80) rest.pop_back();  // inside a sign
@@ -103,7 +103,7 @@ CaptionBitmap fitted(const Sheet& sheet, const std::string& words, int pixels, i
 }
 
 // Draws "name = value", or the value alone where both do not fit.
-CaptionBitmap fitted_value(const Sheet& sheet, const std::string& words, int width) {
+TextBitmap fitted_value(const Sheet& sheet, const std::string& words, int width) {
   const std::size_t equals = words.find(" = ");
   const bool fits = equals == std::string::npos || bitmap_of(sheet, words, word_pixels).width <= width;
   return fitted(sheet, fits ? words : words.substr(equals + 3), word_pixels, width);
@@ -165,7 +165,7 @@ PngImage compose(const Sheet& sheet) {
   const int row_height = cell.height + 8 + line * int(most_lines) + cell_gap;
   const int rows = (int(sheet.pictures.size()) + sheet.columns - 1) / sheet.columns;
   const int width = 2 * border + sheet.columns * (cell.width + cell_gap) - cell_gap;
-  const CaptionBitmap title = fitted(sheet, sheet.title, title_pixels, width - 2 * border);
+  const TextBitmap title = fitted(sheet, sheet.title, title_pixels, width - 2 * border);
   const int top = border + (title.height > 0 ? title.height + cell_gap : 0);
   Canvas canvas({width, top + rows * row_height - cell_gap + border});
   canvas.write(border, border - 4, title, sheet_ink);
@@ -177,10 +177,10 @@ PngImage compose(const Sheet& sheet) {
       canvas.place(x + (cell.width - small.width) / 2, y + (cell.height - small.height) / 2, small);
     } else {
       canvas.fill(x, y, cell, sheet_field);
-      const CaptionBitmap words = fitted(sheet, sheet.pictures[i].missing, word_pixels, cell.width);
+      const TextBitmap words = fitted(sheet, sheet.pictures[i].missing, word_pixels, cell.width);
       canvas.write(x + (cell.width - words.width) / 2, y + (cell.height - words.height) / 2, words, sheet_soft);
     }
-    const CaptionBitmap mark = bitmap_of(sheet, sheet.pictures[i].mark, word_pixels);
+    const TextBitmap mark = bitmap_of(sheet, sheet.pictures[i].mark, word_pixels);
     canvas.write(x + cell.width - mark.width, y + cell.height + 8, mark, sheet_soft);
     for (std::size_t k = 0; k < lines[i].size(); ++k) {
       const int room = cell.width - (k == 0 && mark.width > 0 ? mark.width + 10 : 0);

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "film/pictures/camera.h"
-#include "film/pictures/draw_scene.h"
 #include "film/pictures/drawn_supports.h"
+#include "film/pictures/film_stage.h"
 #include "film/pictures/surface_field.h"
 #include "scene/replay/script.h"
 
@@ -35,7 +35,7 @@ class DrawnFilm {
   double share_in_picture(std::size_t body, const DrawList& list) const {
     return supple::share_in_picture(list.camera, stage_, list.positions[body]);
   }
-  // Returns how far a body's skin is stretched beyond its elements in a list (draw_scene.h). now: the positions of its
+  // Returns how far a body's skin is stretched beyond its elements in a list (film_stage.h). now: the positions of its
   // mesh [m].
   std::optional<double> skin_excess_of(std::size_t body, const DrawList& list, const TetMesh& mesh,
                                        const Positions& now) const {

@@ -18,7 +18,7 @@ std::filesystem::path write_sheet(const std::filesystem::path& folder, const std
   constexpr int most = 12, columns = 4;
   const auto count = static_cast<int>(times.size());
   const int shown = std::min(most, count);
-  Sheet sheet{title, {}, std::min(columns, count), caption_font()};
+  Sheet sheet{title, {}, std::min(columns, count), text_font()};
   for (int i = 0; i < shown; ++i) {
     const int picture = shown == 1 ? 0 : i * (count - 1) / (shown - 1);
     sheet.pictures.push_back(

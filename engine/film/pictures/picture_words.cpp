@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "render/caption.h"
 #include "render/code_points.h"
 #include "render/font_search.h"
+#include "render/text_bitmap.h"
 
 namespace supple {
 namespace {

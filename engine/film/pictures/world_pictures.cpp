@@ -22,7 +22,7 @@ class WorldPictures::Studio {
  public:
   Studio(const Script& script, const World& world, std::vector<DrawnBody> drawn, std::string key)
       : key_(std::move(key)),
-        film_(script, world.bodies(), std::move(drawn), world.colliders(), caption_font(script.scene().text)),
+        film_(script, world.bodies(), std::move(drawn), world.colliders(), text_font(script.scene().text)),
         nearest_(distance_of(film_.stage().first_camera)) {
     const BlockedSignals meanwhile;  // the thread that asks for pictures takes signals
     thread_ = std::thread([this] { draw_all(); });

@@ -66,7 +66,7 @@ Font font_asked_for(const TextDef& text) {
 
 }  // namespace
 
-Font caption_font(const TextDef& text) {
+Font text_font(const TextDef& text) {
   if (!text.font.empty()) return font_asked_for(text);
   for (const char* font :
        {"/usr/share/fonts/truetype/lato/Lato-Regular.ttf", "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",

@@ -21,7 +21,7 @@ std::vector<std::string> shipped_names(const std::string& kind);
 
 // Returns the font of a film's words: that of the family that its text asks for, or else a usual sans-serif one; empty
 // when none is installed. Throws InputError when the family is not.
-Font caption_font(const TextDef& text = {});
+Font text_font(const TextDef& text = {});
 
 // Returns the scene or replay that a user means: a file, or the name of one that ships ("squirrel"). Throws InputError
 // where there is neither.

@@ -28,7 +28,7 @@ PairRecorder::PairRecorder(const World& world, const FrameRows& earlier)
   }
   std::vector<Names> met, deep;
   earlier.each([&](const FrameRow& row) {
-    met.insert(met.end(), row.met.begin(), row.met.end());
+    met.insert(met.end(), row.passing.begin(), row.passing.end());
     for (const DeepRow& pair : row.deep) deep.push_back(pair.bodies);
     note_who_came_apart(row);
   });
@@ -112,7 +112,7 @@ void PairRecorder::find_passings(const std::vector<Positions>& points, FrameRow&
     if (meet(bodies[a].def, bodies[b].def)) {
       row.deep.push_back({names(a, b), 0, {0, 0, 0}});
     } else {
-      row.met.push_back(names(a, b));
+      row.passing.push_back(names(a, b));
     }
   }
 }

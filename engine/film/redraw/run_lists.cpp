@@ -17,7 +17,7 @@ RunLists::RunLists(LoadedDrawing& drawing)
     : drawing_(drawing),
       world_(drawing.film.world),
       drawn_(world_.script(), world_.bodies(), drawing.film.drawn, world_.colliders(),
-             caption_font(world_.script().scene().text)),
+             text_font(world_.script().scene().text)),
       threads_(drawing.film.info.threads) {
   drawn_.know_times(drawing.rows);
   for (const FrameRow& row : drawing.rows) graphed_.push_back(graph_point(row));

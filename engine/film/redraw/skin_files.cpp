@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/interrupts.h"
-#include "film/pictures/draw_scene.h"
+#include "film/pictures/film_stage.h"
 #include "output/files/colored_obj.h"
 #include "output/files/folder_lock.h"
 #include "output/files/obj_file.h"

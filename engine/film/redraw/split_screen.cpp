@@ -8,9 +8,9 @@
 #include "base/error.h"
 #include "output/files/png_file.h"
 #include "output/run/run_folder.h"
-#include "render/caption.h"
 #include "render/legend.h"
 #include "render/sticker.h"
+#include "render/text_bitmap.h"
 
 namespace supple {
 namespace {
@@ -45,14 +45,14 @@ Grid grid_of(const PngImage& first, int panels, int columns) {
 
 // Returns the size, `em` or less, at which a text is no wider than its panel [pixels].
 int fitting_em(const Font& font, const std::string& text, int em, int width) {
-  while (em > 7 && draw_caption(font, text, em).width > width) --em;
+  while (em > 7 && draw_text(font, text, em).width > width) --em;
   return em;
 }
 
 void write_line(Sticker& strip, const Font& font, const std::string& text, int em, int y, const Vec3& color) {
   if (text.empty() || font.empty()) return;
   const int fitting = fitting_em(font, text, em, strip.width() - em);
-  strip.text(font, text, fitting, (strip.width() - draw_caption(font, text, fitting).width) / 2, y, color);
+  strip.text(font, text, fitting, (strip.width() - draw_text(font, text, fitting).width) / 2, y, color);
 }
 
 void paste(const PngImage& panel, Image& image, int x, int y) {

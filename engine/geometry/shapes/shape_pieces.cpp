@@ -26,6 +26,12 @@ double bulge_of(const Primitive& primitive) {
   return std::visit(Visitor{}, primitive);
 }
 
+// Tells whether a primitive is known to be convex.
+bool is_convex(const Primitive& primitive) {
+  return !std::holds_alternative<Torus>(primitive) && !std::holds_alternative<ClosedSurface>(primitive) &&
+         !std::holds_alternative<ShapeGroup>(primitive);
+}
+
 bool is_union(const ShapeGroup& group) {
   return std::all_of(group.parts.begin(), group.parts.end(),
                      [](const ShapePart& part) { return part.combine == Combine::add && part.blend <= 0; });
@@ -43,6 +49,7 @@ void add_pieces(const ShapeGroup& group, std::vector<ShapePiece>& pieces) {
       ShapePiece& piece = pieces.emplace_back();
       piece.shape.root.parts = {part};
       piece.bulge = part.mirror_x ? 0 : part.scale * bulge_of(part.primitive);
+      piece.convex = !part.mirror_x && is_convex(part.primitive);
       continue;
     }
     const std::size_t first = pieces.size();

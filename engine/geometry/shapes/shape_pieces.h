@@ -14,6 +14,7 @@ struct ShapePiece {
   // bent outward; 0 also where it is not known [m].
   double bulge = 0;
   double half_thickness = 0;  // Shape::half_thickness [m]
+  bool convex = false;        // false also where it is not known
 };
 
 std::vector<ShapePiece> pieces_of(const Shape& shape);

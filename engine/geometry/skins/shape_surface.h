@@ -5,8 +5,8 @@
 
 namespace supple {
 
-// Moves a point along the slope of the shape's field onto the shape's surface, and returns where it is then. A point
+// Moves a point along the slope of the shape's field onto the shape's surface, and returns where it is then. A start
 // that would have to move by `reach` or more stays where it is. The field must be smooth within `reach` of it [m].
-Vec3 onto_surface(const Shape& shape, const Vec3& point, double reach);
+Vec3 onto_surface(const Shape& shape, const Vec3& start, double reach);
 
 }  // namespace supple

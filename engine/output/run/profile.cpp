@@ -27,7 +27,7 @@ Distribution distribution_of(std::vector<double> values) {
 std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows) { return RowTally(rows).stages(); }
 std::vector<std::string> warnings_of(const std::vector<FrameRow>& rows) { return RowTally(rows).warnings(); }
 std::vector<std::string> penetration_warnings(const std::vector<FrameRow>& rows) {
-  return RowTally(rows).penetrations();
+  return RowTally(rows).penetration_warnings();
 }
 std::string profile_table(const std::vector<FrameRow>& rows) { return RowTally(rows).table(); }
 

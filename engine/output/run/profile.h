@@ -114,7 +114,7 @@ struct FrameRow {
   std::uint64_t state_hash = 0;
   std::optional<bool> as_in_session;  // whether the states are those of the live session that wrote the replay
   // Pairs of bodies that do not meet, and that pass through each other in this frame for the first time.
-  std::vector<std::array<std::string, 2>> met;
+  std::vector<std::array<std::string, 2>> passing;
   // Pairs of bodies that meet, and that are deep in each other, or cross, in this frame for the first time.
   std::vector<DeepRow> deep;
   std::vector<PairRow> pairs;  // pairs of bodies that touch each other, and bodies that touch themselves

@@ -108,7 +108,7 @@ Json json_of(const FrameRow& row) {
   if (row.compress_ms) frame["compress_ms"] = rounded_ms(*row.compress_ms);
   frame["state_hash"] = hash_text_form(row.state_hash);
   if (row.as_in_session) frame["as_in_session"] = *row.as_in_session;
-  if (!row.met.empty()) frame["met"] = row.met;
+  if (!row.passing.empty()) frame["met"] = row.passing;
   for (const DeepRow& pair : row.deep) frame["deep"].push_back(json_of(pair));
   for (const PairRow& pair : row.pairs) frame["pairs"].push_back(json_of(pair));
   frame["bodies"] = Json::array();
@@ -214,7 +214,7 @@ FrameRow frame_row(const Json& json) {
   read_if_there(json, "compress_ms", row.compress_ms);
   row.state_hash = std::stoull(json.at("state_hash").get<std::string>(), nullptr, 16);
   if (json.contains("as_in_session")) row.as_in_session = json.at("as_in_session").get<bool>();
-  if (json.contains("met")) json.at("met").get_to(row.met);
+  if (json.contains("met")) json.at("met").get_to(row.passing);
   for (const Json& pair : json.value("deep", Json::array())) row.deep.push_back(deep_row(pair));
   for (const Json& pair : json.value("pairs", Json::array())) row.pairs.push_back(pair_row(pair));
   for (const Json& body : json.at("bodies")) row.bodies.push_back(body_row(body));

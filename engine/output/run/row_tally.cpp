@@ -10,7 +10,6 @@
 namespace supple {
 namespace {
 
-constexpr double much_energy = 0.2;       // of what was exchanged
 constexpr double much_in_picture = 0.6;   // less of a body's surface is a cut that one sees
 constexpr double much_open = 0.1;         // of an edge, between two places that a seam joins
 constexpr double much_skin_excess = 1.5;  // as many times the stretch of the elements
@@ -136,7 +135,7 @@ void RowTally::add(const FrameRow& row) {
     ++compared_;
     if (!*row.as_in_session && first_other_ < 0) first_other_ = row.frame;
   }
-  for (const std::array<std::string, 2>& bodies : row.met) met_.push_back({bodies, row.frame});
+  for (const std::array<std::string, 2>& bodies : row.passing) passing_.push_back({bodies, row.frame});
   for (const DeepRow& pair : row.deep) deep_.push_back({pair, row.frame});
   add_pairs(row, pairs_);
   for (std::size_t body = 0; body < row.bodies.size(); ++body) add_body(row, body);
@@ -171,7 +170,7 @@ FrameWork RowTally::work(double encoding) const {
   return work;
 }
 
-std::vector<std::string> RowTally::penetrations() const {
+std::vector<std::string> RowTally::penetration_warnings() const {
   std::vector<std::string> list;
   for (const TouchTally& one : touches_) {
     if (one.far_frames > 0)
@@ -244,7 +243,7 @@ std::string missed_text(const DeepTally& pair) {
 
 }  // namespace
 
-std::vector<std::string> RowTally::depths_of_pairs() const {
+std::vector<std::string> RowTally::pair_warnings() const {
   std::vector<std::string> list;
   std::vector<const DeepTally*> missed;  // those that no sentence tells yet
   for (const DeepTally& pair : deep_) missed.push_back(&pair);
@@ -313,11 +312,11 @@ std::vector<std::string> RowTally::warnings() const {
         "from frame {} on the film is not as the live session played it that wrote the replay: the same bits want the "
         "same settings and files, the same program, and the same kind of processor",
         first_other_));
-  for (const MetTally& pair : met_)
+  for (const PassingTally& pair : passing_)
     list.push_back(fmt::format("bodies '{}' and '{}' pass through each other from frame {} on: these two do not meet",
                                pair.bodies[0], pair.bodies[1], pair.frame));
-  for (std::string& warning : depths_of_pairs()) list.push_back(std::move(warning));
-  for (std::string& warning : penetrations()) list.push_back(std::move(warning));
+  for (std::string& warning : pair_warnings()) list.push_back(std::move(warning));
+  for (std::string& warning : penetration_warnings()) list.push_back(std::move(warning));
   for (std::string& warning : missing_in_pictures()) list.push_back(std::move(warning));
   if (std::string warning = unsolved_warning(); !warning.empty()) list.push_back(std::move(warning));
   return list;

@@ -11,6 +11,9 @@
 
 namespace supple {
 
+// The energy from nothing over the exchanged energy above which a run warns.
+inline constexpr double much_energy = 0.2;
+
 // Tallies one stage of a frame.
 struct StageTally {
   std::optional<double> first;  // of the first frame [ms]
@@ -70,7 +73,7 @@ struct DeepTally {
 };
 
 // Tells since when two bodies that do not meet pass through each other.
-struct MetTally {
+struct PassingTally {
   std::array<std::string, 2> bodies;
   int frame;
 };
@@ -109,13 +112,13 @@ class RowTally {
   const std::vector<UnsolvedStep>& unsolved() const { return unsolved_; }
 
   // Some of these functions return for the rows that were added what functions elsewhere return for a list of rows:
-  // stages() as summarize(), warnings() as warnings_of(), penetrations() as penetration_warnings(), table() as
+  // stages() as summarize(), warnings() as warnings_of(), penetration_warnings() as that of profile.h, table() as
   // profile_table() (profile.h); work() as work_of() (verdict.h).
   std::vector<StageSummary> stages() const;
   std::vector<std::string> warnings() const;
-  std::vector<std::string> penetrations() const;
+  std::vector<std::string> penetration_warnings() const;
   // Tells, a sentence for each pair, which bodies were deeper in each other than they should be.
-  std::vector<std::string> depths_of_pairs() const;
+  std::vector<std::string> pair_warnings() const;
   // Tells which bodies are out of pictures, or cut by their borders.
   std::vector<std::string> missing_in_pictures() const;
   // Returns the last of the warnings: "3 of 400 frames did not come near their solution: ...", with the worst step of
@@ -144,7 +147,7 @@ class RowTally {
   std::vector<TouchTally> touches_;
   std::vector<PairTally> pairs_;
   std::vector<DeepTally> deep_;
-  std::vector<MetTally> met_;
+  std::vector<PassingTally> passing_;
   std::vector<UnsolvedStep> unsolved_;
   UnsolvedWords unsolved_words_;
 };

@@ -8,16 +8,16 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "scene/building/cloth_cut.h"
-#include "scene/building/overlaps.h"
 #include "scene/building/seam_pairs.h"
 #include "scene/building/selected_vertices.h"
 #include "scene/building/skin_offsets.h"
+#include "scene/building/starts_inside.h"
 #include "scene/building/unplaced_body.h"
 #include "scene/building/weaving.h"
 #include "scene/definition/rotation.h"
 #include "scene/definition/scene_def.h"
 #include "scene/reading/body_pieces.h"
-#include "sim/air/closed_surface.h"
+#include "sim/air/enclosed_volume.h"
 
 namespace supple {
 namespace {
@@ -274,7 +274,7 @@ std::vector<Body> assemble(const SceneDef& scene, const SlowWork& work) {
       problems.insert(problems.end(), error.problems().begin(), error.problems().end());
     }
   }
-  find_overlaps(scene, bodies, problems);
+  find_starts_inside(scene, bodies, problems);
   for (Body& body : bodies) add_seams(body, problems);
   std::vector<Problem> unique;
   for (Problem& problem : problems) {

@@ -49,7 +49,7 @@ struct EarlierState {
 // what a step needs (Model, which build_model makes of `description`, and State). MovingBody (world/) moves it.
 struct Body {
   // Names a collider that the body starts in, and tells how deep the body is in it [m].
-  struct Overlap {
+  struct InsideCollider {
     std::string collider;
     double depth;
     bool between;  // whether only places between the body's vertices are inside
@@ -88,7 +88,7 @@ struct Body {
   Shape shape;                                 // the shape of a body made from one, in the file's frame
   Positions unplaced;                          // the rest positions of the mesh in the file's frame
   std::uint64_t seed = 0;                      // seed of its random start
-  std::vector<Overlap> overlaps;               // colliders that it starts in; its definition says what is done
+  std::vector<InsideCollider> starts_inside;   // colliders that it starts in; its definition says what is done
   std::optional<EarlierState> from;            // what it goes on from; nothing: it starts as its definition says
   Vec3 start_move = Vec3(0, 0, 0);             // the move out of colliders that the body would start in [m]
   Eigen::Affine3d placement = no_placement();  // map from the file's frame to the world: turns, scales, moves

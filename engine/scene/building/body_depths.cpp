@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "geometry/triangles/shared_depth.h"
-#include "scene/building/overlaps.h"
+#include "scene/building/starts_inside.h"
 #include "scene/definition/meeting.h"
 #include "sim/contact/own_surface.h"
 

@@ -1,6 +1,6 @@
 // Finds bodies that meet (scene/definition/meeting.h) and are nevertheless in each other: those that start so, which
 // contact pushes apart, and those that are deep in each other while the film runs. The warning is `overlap`. Not here:
-// bodies that pass through each other (body_passings.h), and bodies in colliders (overlaps.h).
+// bodies that pass through each other (body_passings.h), and bodies in colliders (starts_inside.h).
 #pragma once
 
 #include <string>

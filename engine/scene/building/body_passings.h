@@ -1,7 +1,7 @@
 // Finds the bodies of a scene that are in the same place although they do not meet (scene/definition/meeting.h), and
 // the cloths that cross each other or themselves although they meet. All of these pass through each other, and whoever
 // makes the film should know that. The warning is `overlap`. Not here: bodies that meet and are deep in each other
-// (body_depths.h), and what a body does with colliders (overlaps.h, sim/contact/).
+// (body_depths.h), and what a body does with colliders (starts_inside.h, sim/contact/).
 #pragma once
 
 #include <array>

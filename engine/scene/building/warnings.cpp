@@ -11,9 +11,9 @@
 #include "scene/building/body_passings.h"
 #include "scene/building/cloth_cut.h"
 #include "scene/building/collision_set.h"
-#include "scene/building/overlaps.h"
 #include "scene/building/seam_pairs.h"
 #include "scene/building/solver_warnings.h"
+#include "scene/building/starts_inside.h"
 #include "scene/building/thin_bodies.h"
 #include "scene/definition/field_def.h"
 #include "scene/definition/meeting.h"
@@ -388,8 +388,8 @@ void warn_of_body(const SceneDef& scene, const Body& body, std::vector<Warning>&
       list.push_back(at(WarningKind::seam, body.def.cloth->seams[s].places[0], std::move(uneven)));
   }
   warn_of_stiffness(scene, body, list);
-  if (!body.overlaps.empty() && !body.from && body.def.start_inside != StartInside::push)
-    list.push_back(at(WarningKind::inside, body.def.place, overlap_text(body)));
+  if (!body.starts_inside.empty() && !body.from && body.def.start_inside != StartInside::push)
+    list.push_back(at(WarningKind::inside, body.def.place, start_inside_text(body)));
   warn_of_fall(scene, body, list);
   warn_of_substance(body, list);
   warn_of_looseness(body, list);

@@ -20,7 +20,7 @@ enum class WarningKind {
   regions,    // the stiffnesses of the body's regions are far apart
   thin,       // the body is a bar or a plate with few elements across
   delay,      // chebyshev's delay leaves no iteration to accelerate
-  overlap,    // bodies, or parts of one, share a place (body_passings.h, body_depths.h; `inside`: overlaps.h)
+  overlap,    // bodies, or parts of one, share a place (body_passings.h, body_depths.h; `inside`: starts_inside.h)
   skin,       // the skin reaches far beyond the elements
   cut,        // a cloth starts stretched far from the flat pieces that it was cut from
   seam,       // the sides of a seam have very different lengths

@@ -222,7 +222,7 @@ void read_cloth_look(const ConfigTable& table, BodyDef& body) {
 
 // Reads what the body does with others. Whether the names are those of bodies is known once all have been read
 // (meeting_check.h).
-BodyContactDef read_contact(const ConfigTable& body) {
+BodyContactDef read_body_contact(const ConfigTable& body) {
   BodyContactDef contact;
   const auto table = body.table({"contact", "", "with other bodies, with itself and with colliders"});
   if (!table) return contact;
@@ -379,7 +379,7 @@ void read_influences(const ConfigTable& table, BodyDef& body) {
   body.drag = read_drag(table);
   body.pressure = read_pressure(table);
   body.pressure_place = table.place("pressure");
-  body.contact = read_contact(table);
+  body.contact = read_body_contact(table);
   if (body.cloth && body.contact.restitution > 0)
     table.complain("contact", "contact.restitution is for solids: a cloth has no motion as a whole that could bounce");
   read_handles(table, body);

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "sim/air/closed_surface.h"
+#include "sim/air/enclosed_volume.h"
 #include "sim/air/wind_field.h"
 #include "sim/model/vertex_chunks.h"
 

@@ -95,8 +95,6 @@ class AirForces {
 
   void remember_structure(const Model& model);
   void set_facets(const Model& model, const ActivePart& part, const Wind& wind, double time);
-  AirChange add_part(const Model& model, Threads* threads, ActivePart& part, const Positions& x,
-                     const Positions* reference, const Positions& direction, Positions* gradient);
   double evaluate_triangles(const Model& model, Threads* threads, ActivePart& part, const Positions& x,
                             const Positions* reference);
   double gather(const Model& model, Threads* threads, const ActivePart& part, const Positions& direction,

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "sim/air/air_forces.h"
-#include "sim/air/closed_surface.h"
+#include "sim/air/enclosed_volume.h"
 
 namespace supple {
 namespace {

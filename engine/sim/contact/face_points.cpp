@@ -145,8 +145,10 @@ struct TriangleSearch {
     const TriangleInShape search(probe, piece.piece.half_thickness, corners, near);
     double radius = 0;
     for (const Vec3& corner : corners) radius = std::max(radius, (corner - search.center().point).norm());
-    if (std::max(search.bound(), search.center().surface.distance - radius) > within) return;
-    if (search.distance_at_nearest_corner() - search.bound() <= slack) return;
+    if (search.center().surface.distance - radius > within) return;
+    if (piece.piece.convex) {  // no place of the triangle is below the bound
+      if (search.bound() > within || search.distance_at_nearest_corner() - search.bound() <= slack) return;
+    }
     const TriangleInShape::Descent least = search.descend();
     for (int i = 0; i < least.count; ++i) {
       const TrianglePlace& place = least.places[i];

@@ -33,7 +33,7 @@ void find_points(const Model& model, const StepInputs& inputs, const Meeting& me
                  const Positions& x, const Vec3& carried, Work& work) {
   const Part& part = model.parts[meeting.points];
   const Work::Surface& surface = work.surfaces[meeting.points];
-  Work::OwnPoints& near = work.own_points[meeting.points];
+  Work::OwnMemory& near = work.own_points[meeting.points];
   const Positions start = rows_of(part, q);
   near.found_for = rows_of(part, x);
   const double margin = margin_of(model, inputs, part, surface) + slack_of(part, surface);

@@ -36,7 +36,7 @@ class OwnPoints : public TouchedSurface {
   std::optional<Place> arriving(std::size_t index, const Vec3& a, const Vec3& b, double reach) const;
 
   const OwnSurface& own_;
-  const Work::OwnPoints& near_;
+  const Work::OwnMemory& near_;
 };
 
 // Finds which points of a part, or pairs of a sheet, may touch the part itself in a step that begins, and which points

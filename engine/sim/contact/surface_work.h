@@ -61,7 +61,7 @@ struct SurfaceWork::Parts {
     double length = 0;  // the way until all are out; 0: each point leaves by what is closest to it [m]
   };
   // Holds what is known in a step of the points of a part that may touch the part itself.
-  struct OwnPoints {
+  struct OwnMemory {
     OwnSurface::Pairs pairs;                   // by vertices and triangles of the part's own model
     Positions found_for;                       // the end of the motion for which they were found [m]
     std::vector<std::optional<Place>> inside;  // by vertex: the place out of which it has to come, if it begins inside
@@ -74,7 +74,7 @@ struct SurfaceWork::Parts {
   std::vector<std::vector<BesideSheet>> beside_sheets;  // by meeting and point; empty where no point was asked
   std::vector<CommonWay> common_ways;                   // by meeting
   std::vector<char> only_sharp;                         // by meeting: whether it is about its part's sharp points alone
-  std::vector<OwnPoints> own_points;                    // by part
+  std::vector<OwnMemory> own_points;                    // by part
   // Scratch memory of a search for contacts.
   std::vector<std::vector<Contact>> by_chunk;
   std::vector<const Contact*> unordered, by_number;

@@ -18,7 +18,7 @@ constexpr double share_of_constant = 0.02;
 
 // Returns the share of A for a material. A strain limit has no stiffness until it acts, and then all of it at once: its
 // Hessian does not foretell the stiffness that a step meets, so A takes its place.
-double share_in(const Material& material) {
+double share_of_constant_for(const Material& material) {
   return std::holds_alternative<StrainLimiting>(material) ? 1.0 : share_of_constant;
 }
 
@@ -67,7 +67,7 @@ void TurnedHessianSystem::Parts::mix_elements(const Model& of) {
   for (std::size_t c = 0; c < of.chunks.size(); ++c) {
     const Model::ChunkRange& range = of.chunks[c];
     const bool solid = range.kind == ElementKind::tetrahedron;
-    const double share = solid ? share_in(of.materials[range.region]) : share_of_constant;
+    const double share = solid ? share_of_constant_for(of.materials[range.region]) : share_of_constant;
     for_each_element(of, range, [&](const ElementView& element) {
       const std::size_t lane = std::size_t(element.lane) - std::size_t(range.first_block) * block_width;
       mix(&elements.numbers[elements.first[c] + lane * stiffness_numbers(range.kind)], of.system_term(element),

@@ -21,7 +21,7 @@ void set_first_iterate(StepContext& c) {
   const bool touches = may_touch(c.inputs) && w.contact.counts.touching > 0;
   const double from = c.at_prediction.value_or(w.current.g);
 
-  if (touches || is_still(c)) start_without_fall(c);
+  if (touches || hangs_still(c)) start_without_fall(c);
   if (touches && touches_between_vertices(c)) start_where_it_was(c);
 
   const bool is_known = (c.at_prediction || !touches) && !c.stopped;

@@ -93,7 +93,7 @@ struct VertexTerms {
   }
 
  private:
-  // Adds the forces of bending that evaluate_bent() has found. They need no factor, because e theta = 1.
+  // Adds the forces of bending that evaluate_rest_curvature() has found. They need no factor, because e theta = 1.
   void add_curvature(int v, double (&gradient)[3]) const {
     double slope[3];
     curvature_slope(model.curvature, w.curvature, v, slope);
@@ -176,8 +176,8 @@ double evaluate_elements(const Model& model, OpenWorkspace& workspace, const Pos
 
 // Computes the bending of cloth that is curved at rest, and its forces, at `place`; returns e times its energy, or the
 // difference of the energy from a reference's (null: none).
-double evaluate_bent(const Model& model, OpenWorkspace& workspace, const Positions& place, std::vector<double>& energy,
-                     const std::vector<double>* reference) {
+double evaluate_rest_curvature(const Model& model, OpenWorkspace& workspace, const Positions& place,
+                               std::vector<double>& energy, const std::vector<double>* reference) {
   evaluate_curvature(model.curvature, workspace.threads, place.data(), workspace.curvature, energy);
   double sum = 0;
   for (std::size_t t = 0; t < energy.size(); ++t) sum += reference != nullptr ? energy[t] - (*reference)[t] : energy[t];
@@ -252,12 +252,12 @@ Change evaluate_against(const Model& model, OpenWorkspace& workspace, Iterate& a
                 0};
   at.elastic = change.value + (reference != nullptr ? reference->elastic : 0);
   if (!model.curvature.empty())
-    change.value += evaluate_bent(model, workspace, theta < 1 ? workspace.middle : at.x, at.curved,
-                                  reference != nullptr ? &reference->curved : nullptr);
+    change.value += evaluate_rest_curvature(model, workspace, theta < 1 ? workspace.middle : at.x, at.curvature_energy,
+                                            reference != nullptr ? &reference->curvature_energy : nullptr);
   Positions* gradient = wanted == Wanted::gradient ? &at.gradient : nullptr;
   const Positions* reference_x = reference != nullptr ? &reference->x : nullptr;
   const bool bends = !model.bending.begin.empty(), sewn = !model.seams.empty();
-  if (bends) at.bent.resize(model.free, 3);
+  if (bends) at.bending_forces.resize(model.free, 3);
   if ((bends || sewn) && theta < 1 && reference != nullptr)
     workspace.reference_middle = theta * reference->x + (1 - theta) * workspace.start_copy;
   const auto place_of = [&](const Positions& x, const Positions& middle) {
@@ -272,8 +272,8 @@ Change evaluate_against(const Model& model, OpenWorkspace& workspace, Iterate& a
                           !model.damping.begin.empty(),
                           bends ? place_of(at.x, workspace.middle) : nullptr,
                           bends && reference != nullptr ? place_of(reference->x, workspace.reference_middle) : nullptr,
-                          bends ? at.bent.data() : nullptr,
-                          bends && reference != nullptr ? reference->bent.data() : nullptr};
+                          bends ? at.bending_forces.data() : nullptr,
+                          bends && reference != nullptr ? reference->bending_forces.data() : nullptr};
   add_vertices(model, workspace, terms, gradient, change);
   const SewnPlaces sewn_places{place_of(at.x, workspace.middle),
                                reference != nullptr ? place_of(reference->x, workspace.reference_middle) : nullptr};
@@ -347,7 +347,7 @@ double work_on_held(const Model& model, OpenWorkspace& workspace, const Position
       for (int k = 0; k < 3; ++k) work += force[list_stride * i + k] * (x(v, k) - q(v, k));
     }
   }
-  if (!model.curvature.empty()) evaluate_bent(model, workspace, x, workspace.trial.curved, nullptr);
+  if (!model.curvature.empty()) evaluate_rest_curvature(model, workspace, x, workspace.trial.curvature_energy, nullptr);
   for (int v = model.bending.begin.empty() ? model.vertices : model.free; v < model.vertices; ++v) {
     double row[3];
     if (model.curvature.holds(v)) {

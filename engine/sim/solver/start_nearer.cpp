@@ -11,7 +11,7 @@ namespace supple {
 namespace {
 
 // Tells whether a part moves so little that the forces on it must be balanced.
-bool is_still(const StepContext& c, const Part& part) {
+bool hangs_still(const StepContext& c, const Part& part) {
   const Model& model = c.model;
   const OpenWorkspace& w = c.w;
   constexpr double little = 0.01;  // of the energy of the part's free motion in the step
@@ -46,8 +46,8 @@ void set_trial_by_parts(const StepContext& c, const Counts& counts, const Also& 
 
 }  // namespace
 
-bool is_still(const StepContext& c) {
-  return std::ranges::any_of(c.model.parts, [&](const Part& part) { return is_still(c, part); });
+bool hangs_still(const StepContext& c) {
+  return std::ranges::any_of(c.model.parts, [&](const Part& part) { return hangs_still(c, part); });
 }
 
 namespace {
@@ -79,8 +79,8 @@ void start_without_fall(StepContext& c) {
     if (w.turns) w.trial.x.middleRows(first, free) += w.turned.middleRows(first, free);
   };
   set_trial_by_parts(
-      c, [](const Contact& contact) { return contact.depth > 0; }, [&](const Part& part) { return is_still(c, part); },
-      move);
+      c, [](const Contact& contact) { return contact.depth > 0; },
+      [&](const Part& part) { return hangs_still(c, part); }, move);
   start_from_trial_below(1, c);
 }
 

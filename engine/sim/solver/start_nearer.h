@@ -7,7 +7,7 @@
 namespace supple {
 
 // Tells whether a body hangs still, or lies: it moves so little that the forces on it must be balanced.
-bool is_still(const StepContext& c);
+bool hangs_still(const StepContext& c);
 
 // Starts from q + h v where that is better. y contains the fall of the step, |gravity| h^2. A body that rests on
 // something, or slides along it, is that deep in it at y, and a body that hangs still is that far below where it stays:

@@ -1,4 +1,4 @@
-#include "sim/air/closed_surface.h"
+#include "sim/air/enclosed_volume.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "film/pictures/draw_scene.h"
+#include "film/pictures/film_stage.h"
 
 #include <algorithm>
 #include <numbers>

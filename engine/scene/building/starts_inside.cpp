@@ -1,4 +1,4 @@
-#include "scene/building/overlaps.h"
+#include "scene/building/starts_inside.h"
 
 #include <fmt/core.h>
 
@@ -21,9 +21,9 @@ bool lies_in(const Bounds& box, const Vec3& point) {
 
 // Finds how deep the points, of which the first ones are vertices, lie in the colliders themselves; the layers around
 // them may hold points at the start.
-std::vector<Body::Overlap> overlaps_of(const CollisionSet& set, const Obstacles& obstacles, const Positions& points,
-                                       Eigen::Index vertices, double least) {
-  std::vector<Body::Overlap> overlaps;
+std::vector<Body::InsideCollider> starts_inside_of(const CollisionSet& set, const Obstacles& obstacles,
+                                                   const Positions& points, Eigen::Index vertices, double least) {
+  std::vector<Body::InsideCollider> starts_inside;
   for (std::size_t c = 0; c < obstacles.size(); ++c) {
     const Bounds box = set.colliders[c].shape.bounds();
     const Eigen::Isometry3d to_local = obstacles.poses()[c].inverse();
@@ -34,9 +34,9 @@ std::vector<Body::Overlap> overlaps_of(const CollisionSet& set, const Obstacles&
         depth = std::max(depth, -obstacles.distance(c, point) - set.colliders[c].thickness);
       if (v < vertices) of_vertices = depth;
     }
-    if (depth > least) overlaps.push_back({set.colliders[c].name, depth, of_vertices <= least});
+    if (depth > least) starts_inside.push_back({set.colliders[c].name, depth, of_vertices <= least});
   }
-  return overlaps;
+  return starts_inside;
 }
 
 // Tells whether a box in a pose may meet another box, by the balls around both.
@@ -97,7 +97,7 @@ std::string vector_text(const Vec3& v) { return fmt::format("({:.3g}, {:.3g}, {:
 
 }  // namespace
 
-void find_overlaps(const SceneDef& scene, std::vector<Body>& bodies, std::vector<Problem>& problems) {
+void find_starts_inside(const SceneDef& scene, std::vector<Body>& bodies, std::vector<Problem>& problems) {
   if (scene.colliders.empty()) return;
   const CollisionSet set = collision_set(scene);
   std::vector<Eigen::Isometry3d> poses;
@@ -109,10 +109,10 @@ void find_overlaps(const SceneDef& scene, std::vector<Body>& bodies, std::vector
     const Positions vertices = start_positions(body.def.start, rest, body.seed, body.description.name);
     Positions points = vertices;
     append(points, places_between(set, obstacles, body, vertices));
-    body.overlaps = overlaps_of(set, obstacles, points, vertices.rows(), tolerated_overlap * size);
-    if (body.overlaps.empty()) continue;
+    body.starts_inside = starts_inside_of(set, obstacles, points, vertices.rows(), tolerated_overlap * size);
+    if (body.starts_inside.empty()) continue;
     if (body.def.start_inside == StartInside::error) {
-      problems.push_back({body.def.place, overlap_text(body)});
+      problems.push_back({body.def.place, start_inside_text(body)});
     } else if (body.def.start_inside == StartInside::move && !is_held(body)) {
       const std::optional<Vec3> move = small_way_out(set, obstacles, body, vertices, points, small_move * size);
       if (move) body.start_move = *move;
@@ -124,8 +124,9 @@ namespace {
 
 // Tells what becomes of a body that is not moved.
 std::string way_of_pushing(const Body& body) {
-  const bool unseen = body.def.solver.settings.contact.points == ContactPoints::vertices &&
-                      std::ranges::all_of(body.overlaps, [](const Body::Overlap& one) { return one.between; });
+  const bool unseen =
+      body.def.solver.settings.contact.points == ContactPoints::vertices &&
+      std::ranges::all_of(body.starts_inside, [](const Body::InsideCollider& one) { return one.between; });
   if (unseen)
     return "contact of vertices alone does not see that, and leaves it there; solver.contact.points = \"surface\" does";
   const char* why = body.def.start_inside == StartInside::push ? "start_inside = \"push\""
@@ -136,11 +137,11 @@ std::string way_of_pushing(const Body& body) {
 
 }  // namespace
 
-std::string overlap_text(const Body& body) {
-  if (body.overlaps.empty()) return "";
+std::string start_inside_text(const Body& body) {
+  if (body.starts_inside.empty()) return "";
   const double size = bounds_of(body.description.mesh.rest).diagonal();
   std::string places;
-  for (const Body::Overlap& overlap : body.overlaps) {
+  for (const Body::InsideCollider& overlap : body.starts_inside) {
     places += fmt::format("{}{:.3g} m deep inside collider '{}' ({:.2g} % of its size{})",
                           places.empty() ? "" : ", and ", overlap.depth, overlap.collider, 100 * overlap.depth / size,
                           overlap.between ? ", between its vertices" : "");

@@ -1,5 +1,5 @@
 // Tests bodies that start inside colliders: what is said of them, and what becomes of them.
-#include "scene/building/overlaps.h"
+#include "scene/building/starts_inside.h"
 
 #include <gtest/gtest.h>
 
@@ -140,7 +140,7 @@ TEST(Overlaps, BetweenVerticesAreNamedAndMovedOutOfOrSaidToStay) {
     const Start start{"", "[0, 0, 0]",
                       collider("post", "box = { extent = " + extent + " }", "position = " + place + "\n"), true};
     const Body made = assemble(test::scene_of(scene_text(start, body))).front();
-    return overlap_text(made);
+    return start_inside_text(made);
   };
   const std::string post = "[0.02, 0.1, 0.02]", plate = "[1, 0.02, 1]";
   const std::string by_post = text_with(post, "[0.025, -0.03, 0.025]");
@@ -171,14 +171,14 @@ TEST(Overlaps, BodiesThatAreHeldStayWhereTheirHandlesAre) {
       twelve_starts().front(), "handles = [{ name = \"top\", select = { box = [[0, 1, 0], [1, 1, 1]] } }]\n"));
   const Body body = assemble(scene).front();
   EXPECT_TRUE(body.start_move.isZero(0));
-  EXPECT_NE(overlap_text(body).find("handles hold it in its place, so it is pushed out"), std::string::npos);
+  EXPECT_NE(start_inside_text(body).find("handles hold it in its place, so it is pushed out"), std::string::npos);
 }
 
 // A body that touches, or lies a thousandth of its size above, is no overlap.
 TEST(Overlaps, TouchingIsNone) {
   for (const char* position : {"[0, 0, 0]", "[0, 0.0003, 0]", "[0, -0.00003, 0]"}) {
     const SceneDef scene = test::scene_of(scene_text({"", position, ground, false}));
-    EXPECT_TRUE(assemble(scene).front().overlaps.empty()) << position;
+    EXPECT_TRUE(assemble(scene).front().starts_inside.empty()) << position;
     EXPECT_TRUE(warnings(scene, assemble(scene)).empty()) << position;
   }
 }

@@ -13,14 +13,14 @@
 namespace supple {
 
 // Holds a line of text as pixels, of a caption or of any other words.
-struct CaptionBitmap {
+struct TextBitmap {
   int width = 0, height = 0;
   std::vector<std::uint8_t> coverage;  // rows from the top, 0 to 255
 };
 
 // Draws a text in UTF-8 on one line, which is as high as the font's, whichever other fonts help it; pixels: the height
 // of the font's em. A character that no font has becomes a box. Throws RunError when the font cannot be used.
-CaptionBitmap draw_caption(const Font& font, const std::string& text, int pixels);
+TextBitmap draw_text(const Font& font, const std::string& text, int pixels);
 
 // Returns the characters of a text in UTF-8 for which neither the font nor another one that can be found has a glyph,
 // so that boxes are drawn; each once, in the order of the text. Throws RunError when the font cannot be used.

@@ -1,4 +1,4 @@
-#include "render/caption.h"
+#include "render/text_bitmap.h"
 
 #include <fmt/core.h>
 #include <ft2build.h>
@@ -91,7 +91,7 @@ GlyphLine side_by_side(FT_Face face, const std::vector<char32_t>& points) {
   return line;
 }
 
-void lay_over(const FT_Bitmap& from, int left, int top, CaptionBitmap& to) {
+void lay_over(const FT_Bitmap& from, int left, int top, TextBitmap& to) {
   for (int row = 0; row < int(from.rows); ++row) {
     for (int column = 0; column < int(from.width); ++column) {
       const int x = left + column, y = top + row;
@@ -103,10 +103,10 @@ void lay_over(const FT_Bitmap& from, int left, int top, CaptionBitmap& to) {
 }
 
 // Draws a line of glyphs, as high as the lines of a face are.
-CaptionBitmap drawn(const GlyphLine& line, FT_Face usual) {
+TextBitmap drawn(const GlyphLine& line, FT_Face usual) {
   const FT_Size_Metrics& metrics = usual->size->metrics;
   const int ascent = static_cast<int>(metrics.ascender >> 6);
-  CaptionBitmap bitmap;
+  TextBitmap bitmap;
   bitmap.height = static_cast<int>((metrics.ascender - metrics.descender) >> 6) + 1;
   bitmap.width = std::max(line.end + 2, 1);
   bitmap.coverage.assign(std::size_t(bitmap.width) * bitmap.height, 0);
@@ -182,7 +182,7 @@ void set_size(FT_Face face, int pixels) { FT_Set_Pixel_Sizes(face, 0, FT_UInt(st
 
 // Draws a text with all fonts that it needs. Where letters of other fonts are higher than the line, they become
 // smaller.
-CaptionBitmap draw_with_help(Faces& faces, const std::vector<char32_t>& points, int pixels) {
+TextBitmap draw_with_help(Faces& faces, const std::vector<char32_t>& points, int pixels) {
   const std::vector<FT_Face> chosen = faces_of(faces, points);
   for (const FT_Face face : faces.all()) set_size(face, pixels);
   GlyphLine line = shaped(points, chosen);
@@ -199,7 +199,7 @@ CaptionBitmap draw_with_help(Faces& faces, const std::vector<char32_t>& points, 
 
 }  // namespace
 
-CaptionBitmap draw_caption(const Font& font, const std::string& text, int pixels) {
+TextBitmap draw_text(const Font& font, const std::string& text, int pixels) {
   Faces faces(font);
   if (FT_Set_Pixel_Sizes(faces.usual(), 0, pixels) != 0)
     throw RunError(fmt::format("{}: not a usable font", font.file));

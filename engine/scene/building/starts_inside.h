@@ -11,11 +11,11 @@ struct SceneDef;
 
 constexpr double tolerated_overlap = 1e-4;  // depth at the start that does not count, over the (smaller) body's size
 
-// Sets Body::overlaps, and Body::start_move where the scene wants the body moved and a small move is enough. Adds a
-// problem for each overlap that the scene refuses.
-void find_overlaps(const SceneDef& scene, std::vector<Body>& bodies, std::vector<Problem>& problems);
+// Sets Body::starts_inside, and Body::start_move where the scene wants the body moved and a small move is enough. Adds
+// a problem for each overlap that the scene refuses.
+void find_starts_inside(const SceneDef& scene, std::vector<Body>& bodies, std::vector<Problem>& problems);
 
 // Tells of a body's overlaps, and of what is done about them; empty where there are none.
-std::string overlap_text(const Body& body);
+std::string start_inside_text(const Body& body);
 
 }  // namespace supple
