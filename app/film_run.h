@@ -34,8 +34,8 @@ void add_size_option(Verb& verb, std::string& size, const std::string& usual);
 // Adds the options of a film's file.
 void add_coding_options(Verb& verb, FilmCoding& coding);
 
-// The first adds the option of the film's passes. The second puts the passes that it names before the other settings,
-// which override them.
+// The first adds the option of the film's passes. The second puts these passes before the other settings, which
+// override them.
 void add_passes_option(Verb& verb, std::vector<std::string>& passes);
 void ask_for_passes(const std::vector<std::string>& passes, std::vector<std::string>& settings);
 

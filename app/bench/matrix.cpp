@@ -33,8 +33,8 @@ PlayedFilm play_film(Subject& subject, Threads& threads, DirectionStart start, c
     }
     const bool made =
         world.step({{}, [&](std::size_t, int) {
-                      const bool first = renewing.empty() && examining.empty();  // the first matrix is made
-                                                                                 // as a body is prepared
+                      // The first matrix is made as a body is prepared, and does not count as a renewal.
+                      const bool first = renewing.empty() && examining.empty();
                       (body.workspace().renewed && !first ? renewing : examining).push_back(body.report().matrix_ms);
                     }});
     if (!made) throw RunError(fmt::format("{}: frame {} failed", subject.choice.scene, frame));

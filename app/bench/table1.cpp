@@ -134,7 +134,7 @@ const std::vector<Row>& rows() {
   return list;
 }
 
-// Compares our method, with directions that start otherwise than the paper's, with ten iterations of the paper's.
+// Compares ten iterations of the paper's method with ours, whose directions start otherwise.
 struct BesidePapers {
   DirectionStart start;
   PlayedFilm film;

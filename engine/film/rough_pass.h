@@ -12,7 +12,8 @@ namespace supple {
 
 // Says how much work a pass may be.
 struct PassEffort {
-  long long most_vertex_steps;  // over all bodies, frames and substeps; 120,000 take about a second
+  long long most_vertex_steps;  // over all bodies, frames and substeps; 120,000 take about a second for solids, more
+                                // for cloth
   bool is_quick;                // few iterations, whatever the scene asks for
   bool follows_changes;         // whether changes of a replay are made; otherwise the pass ends before the first one
   double share = 0.06;          // share of its vertices that a solid keeps; 0.06: the coarsest; 1: the film's own

@@ -1,5 +1,5 @@
 // Tells before a film is made which bodies its pictures will not show: by a rough first pass, with meshes as coarse as
-// can be, few iterations, and no more steps than take about a second.
+// can be, few iterations, and no more steps than take about a second for solids.
 #pragma once
 
 #include "film/plan/film_plan.h"

@@ -138,7 +138,7 @@ struct Stage {
   std::string headline_template;       // a line as long as any at the top of the picture; there is none when empty
   std::vector<std::string> subtitles;  // all that stand at the lower edge in some picture
   std::vector<GraphLook> graphs;
-  Camera first_camera;        // the camera at the start of the film, for whose picture places of graphs are chosen
+  Camera first_camera;  // at the start of the film: places of graphs, and of captions where it moves, suit its picture
   bool camera_moves = false;  // over the film
 };
 

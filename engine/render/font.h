@@ -1,4 +1,4 @@
-// Names a font that letters are drawn with. Not here: how fonts are found (font_search.h) and drawn (caption.h).
+// Names a font that letters are drawn with. Not here: how fonts are found (font_search.h) and drawn (text_bitmap.h).
 #pragma once
 
 #include <string>

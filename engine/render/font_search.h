@@ -1,5 +1,5 @@
 // Finds installed fonts with fontconfig: by the name of a family, and for characters that the font of a text lacks. Not
-// here: how letters are drawn (caption.h).
+// here: how letters are drawn (text_bitmap.h).
 #pragma once
 
 #include <optional>

@@ -162,7 +162,7 @@ void define_world(py::module_& m) {
 
 scene: the file of a scene, a replay or a model, the name of a scene that ships, or a dict that says what such a file
 says. set: values in place of the scene's, by their paths, as --set takes them. threads: of the solver; 0: all cores.
-Raises InputError with all that is wrong; a scene's warnings are issued as SuppleWarning.)")
+Raises InputError with all that is wrong; a scene's warnings are given as SuppleWarning.)")
       .def(py::init<const py::object&, const py::dict&, int>(), py::arg("scene"), py::kw_only(),
            py::arg("set") = py::dict(), py::arg("threads") = 0)
       .def("step", safe(&WorldFace::step), py::arg("frames") = 1, py::kw_only(), py::arg("errors") = false,

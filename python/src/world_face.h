@@ -16,7 +16,7 @@
 
 namespace supple::python {
 
-// Issues a SuppleWarning.
+// Raises a SuppleWarning.
 void warn(const std::string& text);
 
 // Reports a step that failed.

@@ -14,7 +14,7 @@
 #include "support/scene_text.h"
 
 namespace supple {
-namespace overlaps_test {
+namespace starts_inside_test {
 
 constexpr double gravity = 9.81;
 
@@ -90,7 +90,7 @@ struct StillFilm {
   }
 };
 
-TEST(Overlaps, AreNamedWithBodyColliderAndDepth) {
+TEST(StartsInside, AreNamedWithBodyColliderAndDepth) {
   for (const Start& start : twelve_starts()) {
     SCOPED_TRACE(start.name);
     const SceneDef scene = test::scene_of(scene_text(start));
@@ -107,7 +107,7 @@ TEST(Overlaps, AreNamedWithBodyColliderAndDepth) {
             "0) m before the first frame");
 }
 
-TEST(Overlaps, EndWithTheBodyOutsideWholeAndWithNoMoreEnergyThanLiftingItOutCosts) {
+TEST(StartsInside, EndWithTheBodyOutsideWholeAndWithNoMoreEnergyThanLiftingItOutCosts) {
   for (const Start& start : twelve_starts()) {
     for (const bool push : {false, true}) {
       SCOPED_TRACE(std::string(start.name) + (push ? ", pushed" : ""));
@@ -135,7 +135,7 @@ TEST(Overlaps, EndWithTheBodyOutsideWholeAndWithNoMoreEnergyThanLiftingItOutCost
 }
 
 // A cube of 0.2 m with cells of 0.05 m, and posts of 0.02 m that come in by one of its faces or cut it through.
-TEST(Overlaps, BetweenVerticesAreNamedAndMovedOutOfOrSaidToStay) {
+TEST(StartsInside, BetweenVerticesAreNamedAndMovedOutOfOrSaidToStay) {
   const auto text_with = [](const std::string& extent, const std::string& place, const std::string& body = "") {
     const Start start{"", "[0, 0, 0]",
                       collider("post", "box = { extent = " + extent + " }", "position = " + place + "\n"), true};
@@ -154,7 +154,7 @@ TEST(Overlaps, BetweenVerticesAreNamedAndMovedOutOfOrSaidToStay) {
   EXPECT_EQ(text_with(post, "[0.025, -0.051, 0.025]"), "") << "it stands a millimetre below";
 }
 
-TEST(Overlaps, AreRefusedWhenTheSceneSaysSo) {
+TEST(StartsInside, AreRefusedWhenTheSceneSaysSo) {
   const SceneDef scene = test::scene_of(scene_text(twelve_starts()[3], "start_inside = \"error\"\n"));
   try {
     (void)assemble(scene);
@@ -166,7 +166,7 @@ TEST(Overlaps, AreRefusedWhenTheSceneSaysSo) {
   }
 }
 
-TEST(Overlaps, BodiesThatAreHeldStayWhereTheirHandlesAre) {
+TEST(StartsInside, BodiesThatAreHeldStayWhereTheirHandlesAre) {
   const SceneDef scene = test::scene_of(scene_text(
       twelve_starts().front(), "handles = [{ name = \"top\", select = { box = [[0, 1, 0], [1, 1, 1]] } }]\n"));
   const Body body = assemble(scene).front();
@@ -175,7 +175,7 @@ TEST(Overlaps, BodiesThatAreHeldStayWhereTheirHandlesAre) {
 }
 
 // A body that touches, or lies a thousandth of its size above, is no overlap.
-TEST(Overlaps, TouchingIsNone) {
+TEST(StartsInside, TouchingIsNone) {
   for (const char* position : {"[0, 0, 0]", "[0, 0.0003, 0]", "[0, -0.00003, 0]"}) {
     const SceneDef scene = test::scene_of(scene_text({"", position, ground, false}));
     EXPECT_TRUE(assemble(scene).front().starts_inside.empty()) << position;
@@ -202,5 +202,5 @@ TEST(DrawnGround, ABodyThatFallsThroughItIsNamed) {
   EXPECT_EQ(said("velocity = [0, 40, 0]\n"), "");  // it does not come down in these two seconds
 }
 
-}  // namespace overlaps_test
+}  // namespace starts_inside_test
 }  // namespace supple

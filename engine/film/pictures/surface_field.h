@@ -31,7 +31,7 @@ struct FramePose {
   // where neither the field nor the shutter needs it.
   std::vector<const Positions*> motion, before;
   // The forces of contact at the end of the frame: for each body, by vertex of its mesh [N]. Empty where the field does
-  // not need them; without rows where the scene has nothing to touch.
+  // not need them; without rows, or zero, where the scene has nothing to touch.
   std::vector<const Positions*> forces = {};
   const FrameRow* row = nullptr;             // row of the frame in the run's profile; null where it is not known
   std::span<const GraphPoint> earlier = {};  // points of all earlier frames; empty where the pictures have no graphs

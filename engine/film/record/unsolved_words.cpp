@@ -19,12 +19,14 @@ std::vector<std::string> bodies_meant_unsolved(const SceneDef& scene) {
 UnsolvedWords unsolved_words(const Script& script) {
   const SceneDef& scene = script.scene();
   const auto json = parsed_json<nlohmann::ordered_json>(script.scene_json());
-  std::string options;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const BodyDef& body = scene.bodies[b];
-    const int tripled = 3 * body.solver.settings.iterations;
-    if (json.contains(nlohmann::ordered_json::json_pointer(fmt::format("/body/{}/solver/iterations", b))))
-      options += fmt::format(" --set body.{}.solver.iterations={}", body.name, tripled);
+  std::string options, last;
+  int table = -1;
+  for (const BodyDef& body : scene.bodies) {
+    if (table >= 0 && body.table == last) continue;  // a piece or a copy
+    last = body.table;
+    const nlohmann::ordered_json::json_pointer own(fmt::format("/body/{}/solver/iterations", ++table));
+    if (json.contains(own))
+      options += fmt::format(" --set body.{}.solver.iterations={}", body.table, 3 * body.solver.settings.iterations);
   }
   if (options.empty())
     options = fmt::format(" --set solver.iterations={}", 3 * scene.bodies.front().solver.settings.iterations);

@@ -77,7 +77,8 @@ std::string wrong_with_ply(std::string_view text, std::uintmax_t bytes) {
     if (words.empty()) continue;
     if (words[0] == "format" && words.size() > 1) ascii = words[1] == "ascii";
     if (words[0] == "element" && words.size() > 2) elements.push_back({words[1], count_of(words[2]), 0});
-    // A number in digits takes one of them and a space; a list takes at least its length.
+    // In text, a number takes at least a digit and a space, and so does the length of a list. In bytes, a list takes at
+    // least its length.
     if (words[0] == "property" && words.size() > 2 && !elements.empty())
       elements.back().bytes += ascii ? 2 : bytes_of_type(words[1] == "list" ? words[2] : words[1]);
     if (words[0] != "end_header") continue;

@@ -36,7 +36,7 @@ struct Head {
   std::string text;     // the lines that PLY knows, as they are
   std::size_t end = 0;  // where the first element begins
   long long vertices = 0, faces = 0;
-  int unknown = 0;  // the number of other lines
+  int unknown = 0;  // the number of lines of the header that PLY does not know
 };
 
 std::size_t bytes_of(Number type) {

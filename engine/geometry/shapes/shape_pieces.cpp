@@ -28,8 +28,19 @@ double bulge_of(const Primitive& primitive) {
 
 // Tells whether a primitive is known to be convex.
 bool is_convex(const Primitive& primitive) {
-  return !std::holds_alternative<Torus>(primitive) && !std::holds_alternative<ClosedSurface>(primitive) &&
-         !std::holds_alternative<ShapeGroup>(primitive);
+  struct Visitor {
+    bool operator()(const Sphere&) const { return true; }
+    bool operator()(const Ellipsoid&) const { return true; }
+    bool operator()(const Capsule&) const { return true; }
+    bool operator()(const RoundCone&) const { return true; }
+    bool operator()(const Box&) const { return true; }
+    bool operator()(const Cylinder&) const { return true; }
+    bool operator()(const Torus&) const { return false; }
+    bool operator()(const HalfSpace&) const { return true; }
+    bool operator()(const ClosedSurface&) const { return false; }
+    bool operator()(const ShapeGroup&) const { return false; }
+  };
+  return std::visit(Visitor{}, primitive);
 }
 
 bool is_union(const ShapeGroup& group) {

@@ -19,8 +19,8 @@ struct TriangleForm {
         squares((b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm()) {}
 
   // Returns how good the triangle is on a surface with this unit normal: its shape or 1/4, whichever is less, times the
-  // cosine of its tilt. The shape is 1 for equal sides, and near 0 for a sliver. The score is negative where the
-  // triangle is turned over, and 0 where it has no area.
+  // cosine of its tilt, where that is positive. The shape is 1 for equal sides, and near 0 for a sliver. The score is
+  // negative where the triangle is turned over, and 0 where it has no area.
   double score(const Vec3& normal) const {
     const double facing = area.dot(normal), size = area.norm();
     if (!(size > 0)) return 0;

@@ -137,11 +137,11 @@ struct StageSummary {
 };
 std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows);
 
-// Returns the warnings at the end of a run but for that of unsolved steps (unsolved_steps.h): a sentence for each thing
-// that went wrong and did not end the run. They tell of energy from nothing, stretched skins, elements that are
-// inverted or without volume at the end, seams that are open at the end, states that differ from those of a live
-// session, bodies that pass through each other or are deep in each other, depths in colliders and parts on their far
-// sides (penetration_warnings), and bodies that are out of pictures or cut by their borders.
+// Returns the warnings at the end of a run: a sentence for each thing that went wrong and did not end the run. They
+// tell of energy from nothing, stretched skins, elements that are inverted or without volume at the end, seams that are
+// open at the end, states that differ from those of a live session, bodies that pass through each other or are deep in
+// each other, depths in colliders and parts on their far sides (penetration_warnings), bodies that are out of pictures
+// or cut by their borders, and steps that are unsolved (RowTally::unsolved_warning, with its usual words).
 std::vector<std::string> warnings_of(const std::vector<FrameRow>& rows);
 
 class FrameRows;  // frame_rows.h

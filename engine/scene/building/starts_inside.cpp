@@ -141,10 +141,10 @@ std::string start_inside_text(const Body& body) {
   if (body.starts_inside.empty()) return "";
   const double size = bounds_of(body.description.mesh.rest).diagonal();
   std::string places;
-  for (const Body::InsideCollider& overlap : body.starts_inside) {
+  for (const Body::InsideCollider& inside : body.starts_inside) {
     places += fmt::format("{}{:.3g} m deep inside collider '{}' ({:.2g} % of its size{})",
-                          places.empty() ? "" : ", and ", overlap.depth, overlap.collider, 100 * overlap.depth / size,
-                          overlap.between ? ", between its vertices" : "");
+                          places.empty() ? "" : ", and ", inside.depth, inside.collider, 100 * inside.depth / size,
+                          inside.between ? ", between its vertices" : "");
   }
   const std::string start = fmt::format("body '{}' starts {}: ", body.def.name, places);
   if (body.def.start_inside == StartInside::error) return start + "start_inside = \"error\" refuses that";

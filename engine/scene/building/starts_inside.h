@@ -12,10 +12,10 @@ struct SceneDef;
 constexpr double tolerated_overlap = 1e-4;  // depth at the start that does not count, over the (smaller) body's size
 
 // Sets Body::starts_inside, and Body::start_move where the scene wants the body moved and a small move is enough. Adds
-// a problem for each overlap that the scene refuses.
+// a problem for each collider in which the scene refuses a start.
 void find_starts_inside(const SceneDef& scene, std::vector<Body>& bodies, std::vector<Problem>& problems);
 
-// Tells of a body's overlaps, and of what is done about them; empty where there are none.
+// Tells in which colliders a body starts, and what is done about that; empty where it starts in none.
 std::string start_inside_text(const Body& body);
 
 }  // namespace supple

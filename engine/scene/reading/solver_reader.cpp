@@ -108,9 +108,10 @@ ContactSettings read_contact(const ConfigTable& table, ContactSettings contact) 
 }
 
 SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
-  s.iterations =
-      table.integer({"iterations", "", "quasi-Newton iterations of a round; a hard step makes up to `rounds` of them"},
-                    s.iterations, Range::between(1, 10000));
+  s.iterations = table.integer(
+      {"iterations", "",
+       "quasi-Newton iterations of a round; a step that gains energy from nothing makes up to `rounds` rounds"},
+      s.iterations, Range::between(1, 10000));
   s.history =
       table.integer({"history", "", "window m of L-BFGS; 0 is plain quasi-Newton"}, s.history, Range::between(0, 100));
   s.levels =

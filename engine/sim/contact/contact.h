@@ -39,6 +39,8 @@ struct Contact {
   double friction = 0;       // coefficient times normal force [N]
   double coefficient = 0;    // Coulomb's coefficient, or twice that where the point was pressed in before
   double most_pressing = 0;  // no larger normal force causes friction in this step [N]
+  // By how much the last iterate changed the friction; 0 at a step's first iterate, and where the change was eased [N].
+  double friction_change = 0;
   // This is where u would be if the point had moved with the other side [m]. Colliders without friction leave it at 0.
   Vec3 origin = Vec3::Zero();
   double stick = 0;  // friction is whole above this slip in a step [m]

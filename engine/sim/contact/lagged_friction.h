@@ -3,11 +3,16 @@
 // 2020, section 5.3, lag it too). The overlap of an iterate would give a force that is many times too large; the
 // overlap only reduces friction, smoothly, on a point that is leaving. With a jump at the surface, points would touch
 // and leave without end.
+//
+// Friction that follows from an iterate's depths is a fixed-point iteration, and may swing for ever: more friction
+// turns a ball further, which lifts the point, which lessens the friction. Where it swings, the secant through its last
+// two changes says where it would stay.
 #pragma once
 
 #include <algorithm>
 
 #include "sim/contact/contact.h"
+#include "sim/contact/contact_order.h"
 
 namespace supple {
 
@@ -27,6 +32,24 @@ inline void begin_friction(double coefficient, double depth_before, double depth
   contact.most_pressing =
       was_pressed ? contact.stiffness * depth_before : mass_over_h2 * std::max(0.0, depth_unhindered);
   renew_friction(contact);
+}
+
+// Eases the friction of contacts that were found at the next iterate, where it swings: a change that turns back a part
+// of the last one, or more than it, is made only up to where the secant crosses zero (Irons and Tuck 1969, "A version
+// of the Aitken accelerator for computer iteration"). before: the contacts of the iterate; both lists are ordered
+// (contact_order.h).
+inline void ease_friction(const std::vector<Contact>& before, std::vector<Contact>& next) {
+  constexpr double least = 0.1, most = 0.9;  // of a change
+  auto at = before.begin();
+  for (Contact& contact : next) {
+    while (at != before.end() && comes_before(*at, contact)) ++at;
+    const bool is_new = at == before.end() || comes_before(contact, *at);
+    const double change = contact.friction - (is_new ? 0 : at->friction), last = is_new ? 0 : at->friction_change;
+    contact.friction_change = change;
+    if (change * last >= 0) continue;
+    contact.friction = at->friction + std::clamp(last / (last - change), least, most) * change;
+    contact.friction_change = 0;
+  }
 }
 
 }  // namespace supple

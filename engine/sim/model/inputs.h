@@ -87,11 +87,11 @@ struct ChebyshevSettings {
 struct SolverSettings {
   int iterations = 10;
   int history = 5;  // window m of L-BFGS; 0 is plain quasi-Newton
-  int levels = 2;   // 2: directions know how the body turns (coarse/second_level.h); 1: the paper's method
+  int levels = 2;   // 2: directions know how the body turns (coarse/second_level.h); 1: the paper's matrix alone
   StartMatrix matrix = StartMatrix::system;  // of quasi-Newton directions: one of quasi_newton_matrices
   LineSearch line_search = LineSearch::armijo;
   double armijo = 0.3;      // gamma
-  double target_error = 0;  // stop when the estimates of both errors are below this; 0: do all iterations
+  double target_error = 0;  // stop when the estimates of both errors are below this; 0: no target
   double still = 0;         // stop when less than this is left to go [body sizes]; 0, or levels = 1: do all iterations
   // Single: elements may be evaluated in single precision while that is enough (solver/element_precision.h).
   Precision elements = Precision::single_precision;

@@ -14,8 +14,8 @@ struct Iterate {
   Positions gradient;            // of g, n_free x 3 [N]
   AlignedVector<double> energy;  // of the elements, by lane [J]
   Positions bending_forces;      // forces of bending, n_free x 3 [N]; empty without bending
-  std::vector<double>
-      curvature_energy;           // energies of RestCurvature, by triangle [J]; empty without cloth curved at rest
+  // Energies of RestCurvature, by triangle [J]; empty without cloth that is curved at rest.
+  std::vector<double> curvature_energy;
   std::vector<Contact> contacts;  // found at x, or so near it that they were kept; empty where nothing may touch
   double moved = 0;               // no vertex has moved further since the contacts were found [m]
   bool keeps_contacts = false;    // whether this trial iterate is to take over the contacts that the current one holds

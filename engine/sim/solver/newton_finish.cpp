@@ -77,7 +77,7 @@ Hardness hardness_of(const StepContext& c) {
   if (gains_energy(c)) return Hardness::gains_energy;
   if (c.gave_up || is_unsolved(report.error_estimate, report.iterations, report.line_search))
     return Hardness::far_in_energy;
-  // With one level, which is the paper's method, nearly every step of a stiff body would be hard by its motion.
+  // With one level, as in the paper, nearly every step of a stiff body would be hard by its motion.
   return c.inputs.solver.levels > 1 && is_unsolved(report) ? Hardness::far_in_motion : Hardness::none;
 }
 

@@ -43,9 +43,9 @@ struct VertexTerms {
   // Where the elastic energy is evaluated for the point, and for the reference: the same, or the middle of the step.
   // Null without bending.
   const double* place;
-  const double* reference_place;  // or null
-  double* bent;                   // takes the forces of bending
-  const double* reference_bent;   // those at the reference
+  const double* reference_place;           // or null
+  double* bending_forces;                  // takes the forces of bending
+  const double* reference_bending_forces;  // those at the reference
 
   // Computes row v of beta/h L (p - q).
   void drag(int v, const double* p, double (&sum)[3]) const {
@@ -108,7 +108,7 @@ struct VertexTerms {
     bending_row(model.bending, place, v, of_place);
     for (int c = 0; c < 3; ++c) gradient[c] += of_place[c];
     if (v < model.free) {
-      for (int c = 0; c < 3; ++c) bent[at + c] = of_place[c];
+      for (int c = 0; c < 3; ++c) bending_forces[at + c] = of_place[c];
     }
     if (reference_place == nullptr) {
       for (std::int32_t k = model.bending.begin[v]; k < model.bending.begin[v + 1]; ++k)
@@ -117,7 +117,7 @@ struct VertexTerms {
       return 0.5 * model.scheme.energy * value;
     }
     for (int c = 0; c < 3; ++c)
-      value += (place[at + c] - reference_place[at + c]) * (of_place[c] + reference_bent[at + c]);
+      value += (place[at + c] - reference_place[at + c]) * (of_place[c] + reference_bending_forces[at + c]);
     return 0.5 * model.scheme.energy * value;
   }
 

@@ -1,6 +1,9 @@
 #include "sim/solver/place_iterate.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "sim/contact/lagged_friction.h"
 
 namespace supple {
 
@@ -13,7 +16,12 @@ void find_contacts_of(const Model& model, const StepInputs& inputs, OpenWorkspac
 }
 
 void find_trial_contacts(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
-  if (w.contact.kept_way == 0) return find_contacts_of(model, inputs, w, w.trial);
+  if (w.contact.kept_way == 0) {
+    find_contacts_of(model, inputs, w, w.trial);
+    // Of cloth, points come and go at each iterate, and eased friction makes its steps no better.
+    if (std::ranges::all_of(model.parts, &Part::solid)) ease_friction(w.current.contacts, w.trial.contacts);
+    return;
+  }
   const double way = std::sqrt((w.trial.x - w.current.x).rowwise().squaredNorm().maxCoeff());
   const double moved = w.current.moved + way;
   if (moved >= w.contact.kept_way) return find_contacts_of(model, inputs, w, w.trial);
