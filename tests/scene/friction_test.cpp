@@ -17,7 +17,8 @@ Contact contact_of(std::int32_t number, double friction) {
   return contact;
 }
 
-// With friction f, the next iterate asks for 2 - s (f - 1), whose fixed point is where f = (2 + s) / (1 + s).
+// Returns how far friction is from where it would stay after some iterates. With friction f, the next iterate asks for
+// 2 - s (f - 1), which stays at f = (2 + s) / (1 + s).
 double left_after(int iterates, double s) {
   std::vector<Contact> now = {contact_of(7, 0)};
   for (int i = 0; i < iterates; ++i) {
@@ -30,22 +31,29 @@ double left_after(int iterates, double s) {
 
 TEST(Friction, ComesToRestWhereItWouldSwing) {
   EXPECT_LT(left_after(20, 0.99), 1e-9);
-  EXPECT_LT(left_after(20, 2), 1e-9);
-  EXPECT_LT(left_after(60, 0.5), 1e-9);
+  EXPECT_LT(left_after(20, 1.5), 1e-9);
+  EXPECT_LT(left_after(60, 0.4), 1e-9);   // this swings, and comes to rest by itself
   EXPECT_LT(left_after(60, -0.5), 1e-9);  // this does not swing
 }
 
-TEST(Friction, IsEasedOnlyWhereItTurnsBack) {
-  std::vector<Contact> before = {contact_of(2, 1), contact_of(5, 1)};
-  before[0].friction_change = before[1].friction_change = 1;
-  std::vector<Contact> next = {contact_of(2, 3), contact_of(4, 1), contact_of(5, 0)};
-  ease_friction(before, next);
-  EXPECT_EQ(next[0].friction, 3);
-  EXPECT_EQ(next[0].friction_change, 2);
-  EXPECT_EQ(next[1].friction, 1);
-  EXPECT_EQ(next[1].friction_change, 1);
-  EXPECT_EQ(next[2].friction, 0.5);
-  EXPECT_EQ(next[2].friction_change, 0);
+TEST(Friction, IsEasedOnlyWhereItGoesOnSwinging) {
+  const auto after = [](double last, int swings, double asked) {
+    std::vector<Contact> before = {contact_of(5, 1)}, next = {contact_of(4, 7), contact_of(5, asked)};
+    before[0].friction_change = last;
+    before[0].friction_swings = swings;
+    ease_friction(before, next);
+    EXPECT_EQ(next[0].friction, 7);
+    EXPECT_EQ(next[0].friction_change, 7);
+    return next[1];
+  };
+  EXPECT_EQ(after(1, 1, 0).friction, 0.5);
+  EXPECT_EQ(after(1, 1, 0).friction_change, 0);
+  EXPECT_EQ(after(1, 0, 0).friction, 0);
+  EXPECT_EQ(after(1, 0, 0).friction_swings, 1);
+  EXPECT_EQ(after(1, 1, 0.6).friction, 0.6);  // turns back less than half
+  EXPECT_EQ(after(1, 1, 0.6).friction_swings, 0);
+  EXPECT_EQ(after(1, 1, 3).friction, 3);
+  EXPECT_EQ(after(1, 1, 3).friction_change, 2);
 }
 
 // The ball slides onto the ground and begins to roll; in its second step, the friction of a vertex that arrives swings.

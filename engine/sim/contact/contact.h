@@ -39,8 +39,9 @@ struct Contact {
   double friction = 0;       // coefficient times normal force [N]
   double coefficient = 0;    // Coulomb's coefficient, or twice that where the point was pressed in before
   double most_pressing = 0;  // no larger normal force causes friction in this step [N]
-  // By how much the last iterate changed the friction; 0 at a step's first iterate, and where the change was eased [N].
-  double friction_change = 0;
+  // These are kept from iterate to iterate, so that friction does not swing (ease_friction()).
+  double friction_change = 0;  // by the last iterate; 0 at a step's first one, and where the change was eased [N]
+  int friction_swings = 0;     // how many changes in a row turned back much of the one before
   // This is where u would be if the point had moved with the other side [m]. Colliders without friction leave it at 0.
   Vec3 origin = Vec3::Zero();
   double stick = 0;  // friction is whole above this slip in a step [m]

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "sim/contact/contact.h"
 #include "sim/contact/contact_order.h"
@@ -34,21 +35,29 @@ inline void begin_friction(double coefficient, double depth_before, double depth
   renew_friction(contact);
 }
 
-// Eases the friction of contacts that were found at the next iterate, where it swings: a change that turns back a part
-// of the last one, or more than it, is made only up to where the secant crosses zero (Irons and Tuck 1969, "A version
-// of the Aitken accelerator for computer iteration"). before: the contacts of the iterate; both lists are ordered
-// (contact_order.h).
+// Eases the friction of contacts that were found at the next iterate, where it goes on swinging: after two changes in a
+// row that turn back more than half of the one before, the last one is made only up to where the secant crosses zero
+// (Irons and Tuck 1969, "A version of the Aitken accelerator for computer iteration"). One such change may be due to
+// anything. before: the contacts of the iterate; both lists are ordered (contact_order.h).
 inline void ease_friction(const std::vector<Contact>& before, std::vector<Contact>& next) {
-  constexpr double least = 0.1, most = 0.9;  // of a change
+  constexpr double much = 0.5;  // of the change before
+  constexpr int enough = 2;
+  constexpr double least = 0.1, most = 0.9;  // of a change that is eased
   auto at = before.begin();
   for (Contact& contact : next) {
     while (at != before.end() && comes_before(*at, contact)) ++at;
-    const bool is_new = at == before.end() || comes_before(contact, *at);
-    const double change = contact.friction - (is_new ? 0 : at->friction), last = is_new ? 0 : at->friction_change;
+    if (at == before.end() || comes_before(contact, *at)) {
+      contact.friction_change = contact.friction;
+      continue;
+    }
+    const double change = contact.friction - at->friction, last = at->friction_change;
+    const bool swings = change * last < 0 && std::abs(change) > much * std::abs(last);
     contact.friction_change = change;
-    if (change * last >= 0) continue;
+    contact.friction_swings = swings ? at->friction_swings + 1 : 0;
+    if (contact.friction_swings < enough) continue;
     contact.friction = at->friction + std::clamp(last / (last - change), least, most) * change;
     contact.friction_change = 0;
+    contact.friction_swings = 0;
   }
 }
 
