@@ -45,8 +45,8 @@ struct Pressed {
   int points = 0;       // that carry the force
 };
 
-// Finds the force, and the radius of the patch from how the force is spread over the places of its points: Hertz's
-// pressure p0 sqrt(1 - r^2/a^2) has the mean square radius 2/5 a^2.
+// Finds the force and the radius of the patch. The radius follows from how far the patch's points lie from their
+// middle, weighted by force: Hertz's pressure p0 sqrt(1 - r^2/a^2) has the mean square radius 2/5 a^2.
 Pressed seen_of_patch(TouchingFilm& film) {
   Pressed seen;
   double carried = 0;

@@ -1,5 +1,5 @@
-// These functions write to the terminal. A closed or full standard stream must not end a run: text that cannot be
-// written is dropped. Colour appears on terminals alone, and only on the word with which an error or a warning begins.
+// Writes text to the standard streams. A closed or full one must not end a run: text that cannot be written is dropped.
+// Colour appears on terminals alone, and only on the word with which an error or a warning begins.
 #pragma once
 
 #include <cstdio>

@@ -18,7 +18,8 @@ struct CornerDerivatives {
 };
 
 // Adds the fibres' part. With n = F d, l = |n| and c = grad N . d, the force gets c V kappa (1 - 1/l) n, and the block
-// gets c^2 V kappa ((1 - 1/l) (1 - n n^T / l^2) + n n^T / l^2), where 1 - 1/l counts as zero if it is less.
+// gets c^2 V kappa ((1 - 1/l) (1 - n n^T / l^2) + n n^T / l^2). In the block alone, 1 - 1/l counts as zero where it is
+// negative.
 template <class V>
 void add_fibre_corner(const Fibre& fibre, const Matrix3<V>& f, const V (&gradient)[3], const V& volume,
                       CornerDerivatives<V>& sums) {

@@ -106,7 +106,8 @@ StageCover::Frame StageCover::at(const std::vector<DrawMesh>& meshes, const Draw
 }
 
 // Moves the ground's lit disc along with what the camera follows, which stays near the disc's middle. Where the camera
-// follows nothing, the disc becomes the smallest one that holds both itself and what leaves it.
+// follows nothing, the disc grows for one body after the other, so far that it holds the body and what it held before;
+// it stops once it is `coarsest` times as large as at rest.
 void StageCover::follow_with_light(const std::vector<Ball>& balls, const DrawList& list, Frame& frame) const {
   constexpr double slack = 0.2;  // of the radius, by which what is followed moves before the light does
   if (list.followed) {

@@ -25,8 +25,8 @@ struct World::Parts {
   int frame = -1;                                          // the frame that was entered last; -1: none
   int substep = 0;                                         // the next substep of that frame to be made
   bool has_failed = false;                                 // whether a step of that frame has failed
-  bool has_stepped = false;                                // whether a step was made since it was started or restored
-  double saved_ms = 0;                                     // what World::saved_ms() returns [ms]
+  bool has_stepped = false;  // whether a step was made since the world was started or restored
+  double saved_ms = 0;       // what World::saved_ms() returns [ms]
 
   Parts(std::optional<Script> played, SceneDef at_start, std::vector<Body> assembled)
       : script(std::move(played)),

@@ -20,8 +20,8 @@ struct GraphPoint {
 };
 GraphPoint graph_point(const FrameRow& row);
 
-// Returns the largest time of a frame's steps [ms]; the first frame does not count where there are others. 0 without
-// rows.
+// Returns how long all steps of a frame took together, for the frame in which they took longest [ms]. The first frame
+// counts only where it is the only one. Returns 0 without rows.
 double longest_steps(std::span<const FrameRow> rows);
 
 // Returns the graphs that a scene asks for. longest: the result of longest_steps(), which the scale of times spans

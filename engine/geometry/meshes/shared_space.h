@@ -12,8 +12,8 @@ namespace supple {
 // Describes a mesh in a pose. What it refers to must outlive it.
 struct PosedMesh {
   const Positions& points;   // n x 3 [m]
-  const Triangles& surface;  // m x 3, by row of points
-  const Tetrahedra& tets;    // by row of points; without rows for a cloth, which has no inside
+  const Triangles& surface;  // m x 3: the corners of each triangle, as rows of `points`
+  const Tetrahedra& tets;    // the corners of each element, in the same way; without rows for a cloth
   Bounds box = bounds_of(points);
 };
 

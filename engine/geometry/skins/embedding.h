@@ -12,7 +12,7 @@ namespace supple {
 
 // Says by how much a frame of Embedding::frames counts for a point.
 struct FrameShare {
-  std::int64_t frame;  // as wide as the share, so that no byte of a list is padding and lists are kept as they are
+  std::int64_t frame;  // 64 bits, as the share, so that there is no padding and lists are kept byte by byte
   double share;        // not negative
 };
 

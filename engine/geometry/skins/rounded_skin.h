@@ -1,6 +1,6 @@
-// Makes a drawn surface rounder where a picture would show its triangles: the outline of a body, and the borders of its
-// paint, are otherwise the polygon of edges that were fine enough for smaller pictures. The mesh that is simulated has
-// no part in it.
+// Makes a drawn surface rounder where a picture would show its triangles: without this, the outline of a body and the
+// borders of its paint show straight edges, which were fine enough for smaller pictures. The mesh that is simulated
+// stays as it is.
 #pragma once
 
 #include "geometry/skins/skin.h"

@@ -21,7 +21,8 @@ struct Part {
   std::vector<TriangleSoup> soup;  // one, once it has been needed
 };
 
-// Returns some triangles of a mesh, with their own vertices. name: -1 for each vertex of the mesh, before and after.
+// Returns the listed triangles as a mesh whose points are their corners alone, numbered anew. name: scratch for these
+// numbers, by vertex of `mesh`; -1 for each before the call, and again after it.
 TriMesh own_mesh(const TriMesh& mesh, const std::vector<Eigen::Index>& triangles, std::vector<std::int32_t>& name) {
   std::vector<std::int32_t> used;
   TriMesh part{Positions(), mesh.triangles(triangles, Eigen::all)};

@@ -1,7 +1,7 @@
-// Stuffs a body-centred cubic lattice of one spacing with tetrahedra up to a shape's surface (Labelle and Shewchuk
-// 2007, "Isosurface stuffing"): lattice points too close to the surface are moved onto it, and then the lattice is cut
-// there, so that the dihedral angles stay between about 10.7 and 165 degrees. Not here: which spacing gives how many
-// vertices (tetrahedralize.h).
+// Stuffs a shape with the tetrahedra of a body-centred cubic lattice of one spacing (Labelle and Shewchuk 2007,
+// "Isosurface stuffing"): lattice points too close to the shape's surface are moved onto it, and the tetrahedra that it
+// then still crosses are cut at it, so that the dihedral angles stay between about 10.7 and 165 degrees. Not here:
+// which spacing gives how many vertices (tetrahedralize.h).
 #pragma once
 
 #include <functional>

@@ -37,8 +37,8 @@ Numbered subset(const Numbered& surface, const std::vector<Eigen::Index>& kept);
 // triangle's corner is not finite or beyond 1e50.
 void check_numbers(const TriMesh& raw, const std::string& name);
 
-// Merges equal positions, and leaves out triangles without area and those that repeat others; the notes tell of both.
-// Throws InputError as check_numbers() does, and where no triangle is left.
+// Merges equal positions. Leaves out triangles without area and triangles that repeat others, and counts each kind in a
+// note. Throws InputError as check_numbers() does, and where no triangle is left.
 Numbered cleaned(const TriMesh& raw, const std::string& name, std::vector<std::string>* notes);
 
 // Describes what a triangle has across its edge from corner k to k + 1.

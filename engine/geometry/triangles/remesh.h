@@ -1,6 +1,6 @@
-// Makes a mesh of triangles with nearly equal sides for any triangle surface, such as cloth needs: the surface of a
-// file has long thin triangles, or far too many. It follows Botsch and Kobbelt 2004, "A remeshing approach to
-// multiresolution modeling", section 4. It does not close holes, make solids (solids/solid_surface.h), or follow
+// Makes, from any triangle surface, the mesh that cloth needs, of triangles with nearly equal sides: the surface of a
+// file has long thin triangles, or far too many. The method is that of Botsch and Kobbelt 2004, "A remeshing approach
+// to multiresolution modeling", section 4. It does not close holes, make solids (solids/solid_surface.h), or follow
 // curvature: all edges get one length.
 //
 // Debian 12 has no library that could do this here: CGAL's isotropic_remeshing and Gmsh are under the GPL, OpenMesh has

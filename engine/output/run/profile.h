@@ -73,7 +73,7 @@ struct StepRow {
   std::vector<std::array<int, 2>>
       budget_cuts;  // BudgetCuts (sim/model/budget_cuts.h) by substep; empty without a budget
   bool error_measured = false;
-  std::optional<double> error;         // equation 12; null where the start is already the minimum to round-off
+  std::optional<double> error;         // of equation 12; null where g(y) is above its minimum by round-off alone
   std::optional<double> motion_error;  // distance from the solved step, over the motion in that step
   // Whether the reference of both errors converged; if not, they are against the lowest iterate that it found.
   bool reference_converged = true;

@@ -121,8 +121,9 @@ class RowTally {
   std::vector<std::string> pair_warnings() const;
   // Tells which bodies are out of pictures, or cut by their borders.
   std::vector<std::string> missing_in_pictures() const;
-  // Returns the last of the warnings: "3 of 400 frames did not come near their solution: ...", with the worst step of
-  // each body and whether it is seen; empty where there is none.
+  // Returns the sentence that comes last in warnings(): "3 of 400 frames did not come near their solution: ...". It
+  // names each body with such steps, how far off its worst one is, and whether that is seen. Empty where there are no
+  // such steps, or where all are meant.
   std::string unsolved_warning() const;
   std::string table() const;
   // Says that the film is as the live session played it that wrote the replay; empty where there was no such session,

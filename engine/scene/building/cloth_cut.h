@@ -1,6 +1,7 @@
 // Knows the flat pieces from which a cloth was cut: its texture coordinates, where a scene says that it lies flat in
 // them (cut = "texture"). A dress that is modelled on its wearer then has the shape at rest that its pieces had. Not
-// here: what a triangle of this shape does (sim/elements/triangle.h), and how it is put into the model (weaving.h).
+// here: the energy of a triangle whose flat shape is given (sim/elements/triangle.h), and how triangles are put into
+// the model (weaving.h).
 #pragma once
 
 #include <array>

@@ -84,8 +84,9 @@ struct Names<ColorSource> {
                                        Name{ColorSource::body, "body"}};
 };
 
-// Says what a body does with other bodies and with itself (meeting.h). The table solver.contact is about how contact
-// with colliders is computed, and a collider has its own friction.
+// Says what a body meets, and with which friction (meeting.h), how it bounces off bodies and colliders, and whether its
+// skin touches colliders. Not here: how contact with colliders is computed (the table solver.contact), and a collider's
+// own friction.
 struct BodyContactDef {
   // The names of the only bodies that the body meets: none where the list is empty. Nothing: it meets all.
   std::optional<std::vector<std::string>> meets;

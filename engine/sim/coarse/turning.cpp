@@ -9,7 +9,7 @@
 namespace supple {
 namespace {
 
-// Returns the unit vector along an angle, as a cross product.
+// Returns the matrix of the cross product with the axis of a rotation vector [rad].
 Mat3 axis_of(const Vec3& angle) { return cross_matrix(angle / angle.norm()); }
 
 constexpr double least_angle = 1e-8;  // [rad]; a smaller turn stretches by no more than round-off

@@ -80,7 +80,9 @@ std::size_t couple(const StiffDirection& direction, Eigen::Index number, std::ve
   return home;
 }
 
-// Motions couple all directions that act on a common part.
+// Puts a direction into the list of those that are factored with it, and returns the number of that list. With added
+// motions, several parts have one list, because motions couple directions at right angles, too; for a body alone the
+// motions are added apart.
 std::size_t Capacitance::home_of(const StiffDirection& direction, Eigen::Index number) {
   if (motions_ == nullptr || !has_several_parts()) return couple(direction, number, lists_);
   if (lists_.empty()) lists_.emplace_back();

@@ -38,7 +38,8 @@ class ColliderView {
     return surface_ == nullptr ? own : shape_.carried(own, *surface_);
   }
   Vec3 at_end(const Vec3& world) const { return to_end_ * world; }
-  Vec3 carried(const Vec3& world) const { return end_ * at_start(world); }  // moved with the collider
+  // Returns where a place ends the step if the collider carries it along from the start.
+  Vec3 carried(const Vec3& world) const { return end_ * at_start(world); }
   Way way(const Vec3& q, const Vec3& x) const { return way_from(at_start(q), q, x); }
   // Returns the way of a point for which at_start(q) is known.
   Way way_from(const Vec3& a, const Vec3& q, const Vec3& x) const {

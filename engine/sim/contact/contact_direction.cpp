@@ -27,9 +27,8 @@ void find_stiff_directions(const Model& model, const std::vector<Contact>& conta
   }
 }
 
-// The number of operations of a factorisation grows with the third power of the number of directions. One of 250 takes
-// a fraction of a millisecond, and more directions are allowed where the body is so large that their factorisation
-// takes about half as long as a solve with A.
+// Factoring n directions takes a number of operations that grows as n^3. With 250 directions that is a fraction of a
+// millisecond; a large body may have more, as many as are factored in about half the time of a solve with A.
 std::size_t most_coupled_directions(const Model& model) {
   const double numbers = static_cast<double>(model.factor.stored_numbers());
   return std::max<std::size_t>(250, static_cast<std::size_t>(std::cbrt(45 * numbers)));

@@ -73,8 +73,8 @@ ContactStencil stencil_at(const Model& model, Eigen::Index triangle, const Vec3&
   return point;
 }
 
-// Returns the direction from a place straight out of the collider: the part of the surface's normal at right angles to
-// the face or edge that the place, with these weights of the corners, lies in. Where this part is next to nothing,
+// Returns a unit vector out of the collider, at a place of a body's triangle: the collider's normal without its part
+// along the triangle or, for a place on an edge (the weights tell), along the edge. Where next to nothing is left,
 // returns the normal itself.
 Vec3 straight_out(const TriangleCorners& corners, const Vec3& weights, const Vec3& normal) {
   int other = -1, count = 0;

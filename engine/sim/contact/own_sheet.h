@@ -74,11 +74,13 @@ class OwnSheet {
                 const Points& points, const Edges& edges) const;
   void find_boxes(const Vec3& carried, const Positions& q, const Positions& x) const;
   Corners corners_of(std::int32_t triangle, const Positions& x) const;
-  // These tell whether two things are near each other in the mesh. Two vertices are near if they are the same, the ends
-  // of an edge, or brought together by a seam; triangles and edges are near if they have such vertices.
+  // The next three tell whether two things are near each other in the mesh. Two vertices are near if they are the same
+  // or joined by an edge, where vertices that a seam joins count as one; two other things are, if a vertex of one is
+  // near a vertex of the other.
   bool are_neighbours(std::int32_t a, std::int32_t b) const;
   bool are_beside(std::int32_t vertex, std::int32_t triangle) const;
   bool are_beside(const EdgeEnds& one, const EdgeEnds& other) const;
+
   bool may_meet(std::int32_t vertex, std::int32_t triangle, const Positions& q, const Positions& x,
                 double margin) const;
   bool may_meet(const EdgeEnds& one, const EdgeEnds& other, const Positions& q, const Positions& x,

@@ -89,9 +89,10 @@ class TouchedSurface {
   void add_vertex(std::int32_t vertex, double weight, ContactStencil& stencil) const;
 };
 
-// Tells of each meeting whether only the sharp points of its part are looked at. Of two solids whose points touch each
-// other, those of the coarser one follow from those of the finer one, but for edges and corners: each contact of two
-// surfaces that lie on one another would count twice, and the contacts would nearly depend on each other. Of a sheet
+// Tells of each meeting whether only the sharp points (SurfaceWork) of the part `Meeting::points` are looked at. Of two
+// solids whose points touch each other, those of the coarser one follow from those of the finer one, but for edges and
+// corners: if all were looked at, each contact of two surfaces that lie on one another would count twice, and the
+// contacts would nearly depend on each other. Of a sheet
 // and a solid, all points of the sheet are looked at, and all points of the solid where it is the finer one, but
 // otherwise its sharp ones alone. Of two sheets all are looked at: with those of one alone, ten layers that fall on a
 // ball come through each other.

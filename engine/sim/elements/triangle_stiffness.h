@@ -266,9 +266,9 @@ void sheet_scalar(const M& sheet, const PlaneColumns<V>& f, const V& axial, V (&
 
 }  // namespace stiffness_detail
 
-// Writes d^2 E / dx^2 of corners 1 and 2 (6 x 6, packed; corner 0 follows from translations) or, where `project`, a
-// positive semi-definite matrix: the nearest one for isotropic sheets, and for woven ones the sum of those that are
-// nearest to its parts. [N/m]
+// Writes d^2 E / dx^2 of corners 1 and 2 (6 x 6, packed; corner 0 follows from translations) [N/m]. Where `project`,
+// the Hessian in F is replaced first: for isotropic sheets by the nearest positive semi-definite matrix, for woven ones
+// by the sum of the nearest ones to its parts (threads, shear).
 template <class M>
 template <class V>
 void TriangleFormula<M>::stiffness(const V (&x)[3][3], const V (&field)[fields], bool project, V (&out)[21]) const {

@@ -1,10 +1,10 @@
 // This is a woven sheet: warp and weft threads that cross at right angles in the flat pattern, and hardly couple. With
 // the columns a and b of F along them,
 //   Psi = T_warp(|a|) + T_weft(|b|) + shear/2 (a . b)^2,
-//   T(s) = k/2 (s - 1)^2, of which a share `compression` below 1, plus lock/2 (s - limit)^2 above `limit`,
+//   T(s) = c k/2 (s - 1)^2 + lock k/2 max(0, s - limit)^2, where c is 1 for s >= 1 and `compression` below,
 // in the manner of Baraff and Witkin 1998, "Large steps in cloth simulation", section 4. a . b is twice the shear
 // strain of Green's tensor, the sine of the angle by which the threads are sheared where they are not stretched. lock
-// is 20 times the thread's stiffness: threads whose crimp is pulled out are that much stiffer.
+// is 20: a thread whose crimp is pulled out is stiffer by 20 times k.
 #pragma once
 
 #include <string_view>

@@ -14,9 +14,10 @@ namespace supple {
 struct SolverMemory {
   Positions matrix_made_at;  // where the matrix of directions was made, n x 3; empty: none was [m]
   int matrix_age = 0;        // steps since the matrix was made
-  // The factor by which one evaluation reduced the error (the estimate of the error to the power of one over the number
-  // of evaluations) in the last step that started directions from the turned Hessian, and in the last that started them
-  // from A; 0: not known.
+  // turned_hessian_progress: the factor by which one evaluation reduced the error (the estimate of the error to the
+  // power of one over the number of evaluations) in the last step that started directions from the turned Hessian.
+  // system_progress: the same of A, from its last step without contacts; each step in which the turned Hessian serves
+  // moves it a tenth of the way to 0.25. 0: not known.
   double turned_hessian_progress = 0, system_progress = 0;
   bool began_in_single = false;  // the first direction of the last step promised enough for single precision
 };

@@ -12,7 +12,7 @@ namespace {
 double gradient_noise(const Model& model) { return single_round_off * single_round_off * model.strain_stiffness; }
 
 constexpr double enough = 100;           // times the noise; the direction is then off by a tenth at most
-constexpr double worth_beginning = 100;  // times that; evaluating one iterate again must pay
+constexpr double worth_beginning = 100;  // times `enough` times the noise: evaluating an iterate again must pay
 constexpr int fewest_iterations = 4;
 
 }  // namespace

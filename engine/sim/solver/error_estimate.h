@@ -57,7 +57,7 @@ double motion_ahead(const Model& model, const StepInputs& inputs, const Position
 // workspace's scratch.
 double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& workspace);
 
-// Writes these estimates to the report, for all of a step and for each part of a model of several.
+// Writes motion_estimate() to the report: that of the whole model and, where it has several parts, one for each part.
 void report_motion_estimates(const Model& model, const StepInputs& inputs, const Positions& q,
                              OpenWorkspace& workspace);
 

@@ -9,8 +9,9 @@ namespace supple {
 // Finds the contacts of an iterate; does nothing where nothing may touch.
 void find_contacts_of(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, Iterate& iterate);
 
-// Finds the contacts of the trial iterate. Where no vertex has moved far since those of the current one were found,
-// they are kept instead (Iterate::keeps_contacts): what rests on something hardly moves from iterate to iterate.
+// Finds the contacts of the trial iterate. Of cloth alone, they are those of the current iterate where no vertex has
+// moved by ContactWork::kept_way since these were found (Iterate::keeps_contacts): what rests hardly moves. Of solids
+// alone, friction that swings is eased (lagged_friction.h).
 void find_trial_contacts(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace);
 
 // Evaluates workspace.current with the contacts found there, and appends the value to the report's objectives.
