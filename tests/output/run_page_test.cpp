@@ -97,6 +97,17 @@ TEST(RunPage, SaysWhatHelpsOnlyWhereTheFilmIsSlowerThanAsked) {
   EXPECT_NE(run_page(run).find("solving is 90 %"), std::string::npos);
 }
 
+TEST(RunPage, ShowsTheWarningsOfTheProfile) {
+  const test::TemporaryFolder folder;
+  RunRecord run = small_run(folder.path, 3);
+  run.rows[1].bodies[0].unsolved = true;
+  EXPECT_NE(run_page(run).find("1 of 3 frames did not come near"), std::string::npos) << "a run that was killed";
+  std::ofstream(run.folder / "profile.json") << R"({"summary": {"warnings": ["the film is too short & sweet"]}})";
+  const std::string page = run_page(run);
+  EXPECT_EQ(page.find("did not come near"), std::string::npos);
+  EXPECT_NE(page.find("the film is too short &amp; sweet"), std::string::npos);
+}
+
 TEST(RunPage, TellsTheTimesThatCaptionsTell) {
   const test::TemporaryFolder folder;
   const std::string page = run_page(small_run(folder.path, 6));
