@@ -158,8 +158,8 @@ bool Captions::find_places(const Camera& camera, const LetterSizes& sizes, std::
   bool done = false;
   for (const Demand& demand : demands) {
     if (done || (demand.boards && !have_boards)) continue;
-    // Where captions cannot all be near their bodies, the largest letters are taken with which captions stand less than
-    // a line further away, on average, than with the smallest ones.
+    // If captions cannot all be near their bodies, letters become as large as possible, as long as captions stand less
+    // than a line further away, on average, than they do with the smallest letters.
     std::optional<double> most;
     if (demand.reach == CaptionReach::anywhere && !demand.over_bodies) {
       most = try_size(camera, sizes.smallest, demand);

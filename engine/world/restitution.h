@@ -13,9 +13,9 @@
 // in an island are found together: many tiles are as one floor, and a ball bounces off a light mat that lies on the
 // ground. The energy is counted (Bounces::given).
 //
-// What comes together more slowly than the speed that gravity gives in two steps and a hundredth of the body's size in
-// a second, added up, does not bounce, as in Mueller, Macklin, Chentanez, Jeschke, Kim 2020, "Detailed rigid body
-// simulation with extended position based dynamics", section 3.6: otherwise nothing would come to rest.
+// Bodies bounce only if they come together faster than a threshold: the speed that gravity gives in two steps, plus a
+// hundredth of the body's size in a second. Otherwise nothing would come to rest (Mueller, Macklin, Chentanez, Jeschke,
+// Kim 2020, "Detailed rigid body simulation with extended position based dynamics", section 3.6, has the first part).
 #pragma once
 
 #include <memory>

@@ -18,8 +18,8 @@ namespace {
 
 constexpr double collider_gloss = 0.35;
 
-// Where a part of a skin lies outside all elements, its edges are shortened when they are stretched more than this many
-// times the largest stretch of the elements (at least 1).
+// A skin's edges outside all elements are shortened if they are stretched by more than this factor times the largest
+// stretch of the elements (at least 1).
 constexpr double most_skin_stretch = 1.4;
 
 Vec3 collider_color(const ColliderDef& def) {

@@ -157,7 +157,7 @@ TetMesh nearest_mesh(Search& search, int vertices, const std::string& source, co
     };
     TetMesh mesh = make(search.spacing, shift - Vec3(shift.array().floor()), told);
     const double count = std::max<double>(static_cast<double>(mesh.rest.rows()), 1.0);
-    // What some attempts of about the right size have left apart, further attempts do not join.
+    // Further attempts do not join pieces that were apart in several attempts of about the right size.
     const double held = quality(mesh).volume / search.volume;
     in_pieces += miss(mesh) < 0.1 && held < 0.75 ? 1 : 0;
     if (in_pieces == search.most_in_pieces()) refuse_pieces(source, held);

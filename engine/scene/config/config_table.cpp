@@ -412,19 +412,30 @@ std::vector<std::pair<double, double>> ConfigTable::pairs(const Key& key, std::s
   return {};
 }
 
+namespace {
+
+// Returns the texts of a list; nothing where the node is no list, or has something else in it.
+std::optional<std::vector<std::string>> texts_of(const toml::node& node) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr) return std::nullopt;
+  std::vector<std::string> values;
+  for (const toml::node& element : *list) {
+    const auto value = element.value_exact<std::string>();
+    if (!value) return std::nullopt;
+    values.push_back(*value);
+  }
+  return values;
+}
+
+}  // namespace
+
 std::variant<bool, std::vector<std::string>> ConfigTable::boolean_or_texts(const Key& key, bool fallback,
                                                                            const char* texts) const {
   const std::string allowed = fmt::format("true, false or a list of {}", texts);
   const toml::node* node = find(key, "true, false or list of texts", fallback ? "true" : "false", allowed);
   if (node == nullptr) return fallback;
   if (const auto value = node->value_exact<bool>()) return *value;
-  if (const toml::array* list = node->as_array()) {
-    std::vector<std::string> values;
-    for (const toml::node& element : *list) {
-      if (const auto value = element.value_exact<std::string>()) values.push_back(*value);
-    }
-    if (values.size() == list->size()) return values;
-  }
+  if (auto values = texts_of(*node)) return std::move(*values);
   wrong(key, *node, allowed);
   return fallback;
 }
@@ -432,14 +443,8 @@ std::variant<bool, std::vector<std::string>> ConfigTable::boolean_or_texts(const
 std::vector<std::string> ConfigTable::required_texts(const Key& key, const char* texts) const {
   const std::string allowed = fmt::format("a list of {}", texts);
   const toml::node* node = find(key, "list of texts", "required", allowed);
-  std::vector<std::string> values;
-  if (node == nullptr) return values;
-  if (const toml::array* list = node->as_array()) {
-    for (const toml::node& element : *list) {
-      if (const auto value = element.value_exact<std::string>()) values.push_back(*value);
-    }
-    if (!values.empty() && values.size() == list->size()) return values;
-  }
+  if (node == nullptr) return {};
+  if (auto values = texts_of(*node); values && !values->empty()) return std::move(*values);
   wrong(key, *node, allowed);
   return {};
 }

@@ -24,7 +24,8 @@ Energies energies(const Model& model, const State& state, const Vec3& gravity, O
 // Holds what a body has, and what it was given, since its film began [J].
 struct EnergyBalance {
   double total = 0;
-  // What handles, seams that close, contact, restitution, air and changed values gave; negative where they took more.
+  // Holds the energy that came from handles, seams that close, contact, restitution, air and changed values; it is
+  // negative where these took more than they gave.
   double put_in = 0;
   double from_nothing = 0;  // how far total - put_in is above its lowest value so far
   double held = 0;          // the largest sum of kinetic, elastic, springs' and gas' energy so far
