@@ -1,6 +1,8 @@
 // Defines the error of motion of a step, which sees whether bodies turn.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "sim/model/model.h"
@@ -18,13 +20,22 @@ double motion_error(const Model& model, const Positions& q, const Positions& y, 
 // Returns the error of motion of each of the model's parts.
 std::vector<double> motion_errors(const Model& model, const Positions& q, const Positions& y, const Positions& x,
                                   const Positions& solved);
-// Returns the error of motion where the solved step is not known: x* is taken to lie `times` the way d (n_free x 3)
-// from x, and the step's own motion to be that to x.
-double estimated_motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,
-                              const Positions& d, double times);
-// Returns the estimate of the error of motion of each of the model's parts.
-std::vector<double> estimated_motion_errors(const Model& model, const Positions& q, const Positions& y,
-                                            const Positions& x, const Positions& d, double times);
+// Returns |d|_M of a part, of which d has the free vertices at least (n_free x 3 [m]) [m sqrt(kg)].
+double mass_length(const Model& model, const Part& part, const Positions& d);
+// Returns how far a part counts as moving in a step from q to x [m sqrt(kg)].
+double own_motion(const Model& model, const Part& part, const Positions& q, const Positions& y, const Positions& x);
+
+// Returns the largest of numbers of the parts, number_of(part); one that is not a number counts as the largest.
+template <class NumberOfPart>
+double largest_of_parts(const Model& model, const NumberOfPart& number_of) {
+  double largest = 0;
+  for (const Part& part : model.parts) {
+    const double number = number_of(part);
+    if (std::isnan(number)) return number;
+    largest = std::max(largest, number);
+  }
+  return largest;
+}
 
 // Returns the length of the way d (n_free x 3 [m]) in body sizes, the largest of the model's parts: of each, it is the
 // root of the mean of |d|^2 by mass, over the part's size.

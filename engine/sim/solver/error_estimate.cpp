@@ -137,42 +137,65 @@ const Positions& longest_way(const Model& model, OpenWorkspace& w) {
   return w.scratch;
 }
 
-// Returns the estimate between the one by the way ahead and the most that can be left. weight: that of the logarithm of
-// the most.
-double between(double ahead, double most, double weight) {
-  return ahead > 0 && most > ahead ? ahead * std::pow(most / ahead, weight) : ahead;
-}
+// Estimates the error of motion of each part of a model.
+class MotionEstimates {
+ public:
+  // Overwrites the trial iterate and the workspace's scratch.
+  MotionEstimates(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& w)
+      : model_(model),
+        q_(q),
+        w_(w),
+        way_(way_ahead(model, inputs, w)),
+        times_(times_ahead(w.report)),
+        weight_(weight_of_most(model, w.report)),
+        longest_(weight_ > 0 ? &longest_way(model, w) : nullptr) {}
+
+  double of(const Part& part) const {
+    double ahead = times_ * mass_length(model_, part, way_);
+    if (longest_ != nullptr) {
+      const double most = mass_length(model_, part, *longest_);
+      if (ahead > 0 && most > ahead) ahead *= std::pow(most / ahead, weight_);
+    }
+    const double foretold = w_.lengths.left(&part - model_.parts.data());
+    return (foretold > 0 ? std::sqrt(ahead * foretold) : ahead) / own_motion(model_, part, q_, w_.y, w_.current.x);
+  }
+
+ private:
+  const Model& model_;
+  const Positions& q_;
+  const OpenWorkspace& w_;
+  const Positions& way_;
+  double times_, weight_;
+  const Positions* longest_;
+};
+
+bool has_way_ahead(const StepReport& report) { return !report.failed && report.decrement > 0; }
 
 }  // namespace
 
 double motion_ahead(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
-  if (w.report.failed || w.report.decrement <= 0) return 0;
-  return estimated_motion_error(model, q, w.y, w.current.x, way_ahead(model, inputs, w), times_ahead(w.report));
+  if (!has_way_ahead(w.report)) return 0;
+  const Positions& way = way_ahead(model, inputs, w);
+  return times_ahead(w.report) * largest_of_parts(model, [&](const Part& part) {
+           return mass_length(model, part, way) / own_motion(model, part, q, w.y, w.current.x);
+         });
 }
 
 double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
-  const double ahead = motion_ahead(model, inputs, q, w);
-  const double weight = ahead > 0 ? weight_of_most(model, w.report) : 0;
-  if (weight == 0) return ahead;
-  return between(ahead, estimated_motion_error(model, q, w.y, w.current.x, longest_way(model, w), 1), weight);
+  if (!has_way_ahead(w.report)) return 0;
+  const MotionEstimates estimates(model, inputs, q, w);
+  return largest_of_parts(model, [&](const Part& part) { return estimates.of(part); });
 }
 
 void report_motion_estimates(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
   StepReport& report = w.report;
+  report.motion_estimate = 0;
   report.motion_estimates.clear();
-  if (model.parts.size() < 2) {
-    report.motion_estimate = motion_estimate(model, inputs, q, w);
-    return;
-  }
-  report.motion_estimate = motion_ahead(model, inputs, q, w);
-  if (report.motion_estimate == 0) return;
-  std::vector<double>& of_parts = report.motion_estimates;
-  of_parts = estimated_motion_errors(model, q, w.y, w.current.x, w.trial.gradient, times_ahead(report));
-  const double weight = weight_of_most(model, report);
-  if (weight == 0) return;
-  const std::vector<double> most = estimated_motion_errors(model, q, w.y, w.current.x, longest_way(model, w), 1);
-  for (std::size_t p = 0; p < of_parts.size(); ++p) of_parts[p] = between(of_parts[p], most[p], weight);
-  report.motion_estimate = *std::max_element(of_parts.begin(), of_parts.end());
+  if (!has_way_ahead(report)) return;
+  const MotionEstimates estimates(model, inputs, q, w);
+  report.motion_estimate = largest_of_parts(model, [&](const Part& part) { return estimates.of(part); });
+  if (model.parts.size() < 2) return;
+  for (const Part& part : model.parts) report.motion_estimates.push_back(estimates.of(part));
 }
 
 bool is_near_enough(const Model& model, const StepInputs& inputs, const Positions* q, double above_start,

@@ -47,14 +47,15 @@ double gained_in_all(const Model& model, const StepInputs& inputs, OpenWorkspace
 double error_at_end(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, double gained);
 
 // Estimates the error of motion (model/motion_error.h) of a step from q to the current iterate by the length of the
-// direction that begins there, which leads to the minimum of its quadratic model. With one level, this model resists
-// turning; the second level then adds what is missing. Returns 0 where the rule does not look beyond its last iterate.
-// Leaves the way in the trial iterate's gradient.
+// direction that begins there, which leads to the minimum of its quadratic model; of several parts, it is the largest.
+// With one level, this model resists turning; the second level then adds what is missing. Returns 0 where the rule does
+// not look beyond its last iterate. Leaves the way in the trial iterate's gradient.
 double motion_ahead(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& workspace);
 
-// Does the same, but returns more where the iterations go on gaining as much as before and a material is loose at rest,
-// because what is left then is mostly motion that directions hardly show. Overwrites the trial iterate and the
-// workspace's scratch.
+// Does the same, but with two levels, it lets the rate at which directions have shrunk foretell the way, too: the
+// estimate is the geometric mean of both, because each is off by factors of its own. Where the iterations go on gaining
+// as much as before and a material is loose at rest, the first is taken as longer, because what is left then is mostly
+// motion that directions hardly show. Overwrites the trial iterate and the workspace's scratch.
 double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& workspace);
 
 // Writes motion_estimate() to the report: that of the whole model and, where it has several parts, one for each part.

@@ -15,6 +15,7 @@
 #include "sim/model/report.h"
 #include "sim/model/tangent_system.h"
 #include "sim/model/turned_hessian_system.h"
+#include "sim/solver/direction_lengths.h"
 #include "sim/solver/iterate.h"
 #include "sim/solver/newton_system.h"
 #include "sim/solver/step_clock.h"
@@ -70,6 +71,9 @@ struct OpenWorkspace {
   // The pairs of L-BFGS are stored in a ring.
   std::vector<Positions> step_pairs, gradient_pairs;  // s [m] and t [N]
   std::vector<double> products;                       // s_i . t_j, window x window [J]
+
+  // Of all searches of the step; none with one level, whose directions resist turning and say nothing about it.
+  DirectionLengths lengths;
 
   ContactWork contact;
   ContactCorrection correction;

@@ -125,6 +125,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   const Zone step_zone("step", model.name);
   Zone zone("begin step");
   w.prepare(model, inputs.solver);
+  w.lengths.begin(model);
   StepReport& report = w.report;
   clear(report);
   StepContext c{model, inputs, state, w, rule};
