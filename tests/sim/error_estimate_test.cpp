@@ -8,6 +8,7 @@
 
 #include "baselines/reference.h"
 #include "geometry/triangles/surface_thickness.h"
+#include "sim/model/motion_error.h"
 #include "support/contact_scene.h"
 
 namespace supple {
@@ -100,6 +101,50 @@ TEST(ErrorEstimate, CountsFromThePredictionInContactToo) {
   }
   ASSERT_GT(count, 4);
   EXPECT_LT(std::abs(sum / count), 0.7);
+}
+
+// A cube that lands. With one level, directions resist turning, so that their lengths foretell nothing.
+TEST(ErrorEstimate, OfMotionIsTheMeanOfTwoForecastsWithTwoLevels) {
+  for (const int levels : {1, 2}) {
+    test::ContactScene scene(test::cube(3), {{"ground", test::shape_of(HalfSpace{Vec3::UnitY(), 0})}},
+                             Vec3(0, 0.13, 0));
+    scene.state.v.rowwise() = Eigen::RowVector3d(0.2, -1, 0.1);
+    scene.inputs.solver.levels = levels;
+    scene.inputs.solver.newton = false;
+    const Model& model = scene.model;
+    OpenWorkspace w;
+    int count = 0;
+    for (int frame = 0; frame < 12; ++frame) {
+      const Positions q = scene.state.x;
+      const double estimate = step(model, scene.inputs, scene.state, w).motion_estimate;
+      const double foretold = w.lengths.left(0) / own_motion(model, model.parts[0], q, w.y, w.current.x);
+      const double ahead = motion_ahead(model, scene.inputs, q, w);
+      ASSERT_EQ(foretold > 0, levels > 1 && w.report.iterations > 1) << frame;
+      if (w.report.iterations < 2) continue;
+      const double expected = levels > 1 ? std::sqrt(ahead * foretold) : ahead;
+      EXPECT_NEAR(estimate, expected, 1e-9 * expected) << levels << ", frame " << frame;
+      ++count;
+    }
+    EXPECT_GT(count, 5);
+  }
+}
+
+// What a workspace remembers of the directions of an earlier step is not taken for those of the next.
+TEST(ErrorEstimate, OfMotionDoesNotDependOnEarlierSteps) {
+  const Model model = build_model(test::bar(NeoHookean{2e4, 8e4}, test::Held::hard_end));
+  StepInputs inputs = test::still_inputs(model);
+  inputs.gravity = Vec3(0, -9.81, 0);
+  OpenWorkspace used;
+  State state = rest_state(model);
+  for (const int iterations : {1, 10, 1, 2, 1}) {
+    inputs.solver.iterations = iterations;
+    inputs.solver.rounds = 1;
+    OpenWorkspace fresh;
+    State other = state;
+    const double expected = step(model, inputs, other, fresh).motion_estimate;
+    EXPECT_GT(expected, 0);
+    EXPECT_EQ(step(model, inputs, state, used).motion_estimate, expected) << iterations;
+  }
 }
 
 // A stiff bar of strain limits has no stiffness near rest: its iterations go on gaining about as much as before, and

@@ -20,7 +20,7 @@ double motion_error(const Model& model, const Positions& q, const Positions& y, 
 // Returns the error of motion of each of the model's parts.
 std::vector<double> motion_errors(const Model& model, const Positions& q, const Positions& y, const Positions& x,
                                   const Positions& solved);
-// Returns |d|_M of a part, of which d has the free vertices at least (n_free x 3 [m]) [m sqrt(kg)].
+// Returns |d|_M of one part [m sqrt(kg)]. d holds the model's free vertices at least (n_free x 3 [m]).
 double mass_length(const Model& model, const Part& part, const Positions& d);
 // Returns how far a part counts as moving in a step from q to x [m sqrt(kg)].
 double own_motion(const Model& model, const Part& part, const Positions& q, const Positions& y, const Positions& x);

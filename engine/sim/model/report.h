@@ -64,7 +64,7 @@ struct StepReport {
   double decrease = 0;                   // g(start) - g(end), summed without cancellation [J]
   double remaining_estimate = 0;         // g(end) - g*, from the decrement or from how decreases shrank [J]
   double error_estimate = 0;             // of equation 12's error, from remaining_estimate
-  double motion_estimate = 0;            // of the error of motion (motion_error.h), by the last direction
+  double motion_estimate = 0;            // of the error of motion (motion_error.h), by two forecasts
   std::vector<double> motion_estimates;  // the same of each part; empty for a model of one
   double slope = 0;                      // tr(grad^T d) of the last direction [J]
   double decrement = 0;                  // half of |slope| at the end: what a quadratic g would still lose [J]

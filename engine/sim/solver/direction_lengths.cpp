@@ -17,7 +17,6 @@ void DirectionLengths::begin(const Model& model) {
 void DirectionLengths::add(const Model& model, const Positions& d, double accepted) {
   constexpr double least_share = 0.01;
   const double share = std::min(1.0, accepted / least_share);
-  if (lengths_.size() != model.parts.size()) begin(model);  // a search that is no step's
   for (std::size_t p = 0; p < lengths_.size(); ++p) {
     std::array<double, most>& lengths = lengths_[p];
     std::shift_right(lengths.begin(), lengths.end(), 1);

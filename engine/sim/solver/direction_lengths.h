@@ -1,4 +1,4 @@
-// Follows how the directions of a step shrink, and foretells from this how far the step still is from its minimum.
+// Follows how the directions of a search shrink, and foretells from this how far the search still is from its minimum.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace supple {
 
-// Keeps the lengths of a step's last directions, for each part of a model. A length is |d|_M (model/motion_error.h)
-// [m sqrt(kg)]. Newton's method goes on where L-BFGS ended, so its directions follow those of L-BFGS.
+// Keeps the lengths of a search's last directions, for each part of a model. A length is |d|_M (model/motion_error.h)
+// [m sqrt(kg)]. Newton's method goes on where L-BFGS ended, so the last directions may be of both.
 class DirectionLengths {
  public:
   // Forgets all directions.

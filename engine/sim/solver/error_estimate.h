@@ -52,11 +52,13 @@ double error_at_end(const Model& model, const StepInputs& inputs, OpenWorkspace&
 // not look beyond its last iterate. Leaves the way in the trial iterate's gradient.
 double motion_ahead(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& workspace);
 
-// Does the same, but with two levels, it lets the rate at which directions have shrunk foretell the way, too: the
-// estimate is the geometric mean of both, because each is off by factors of its own. Where the iterations go on gaining
-// as much as before and a material is loose at rest, the first is taken as longer, because what is left then is mostly
-// motion that directions hardly show. Overwrites the trial iterate and the workspace's scratch.
-double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& workspace);
+// Estimates the error of motion of the step. With one level, this is motion_ahead(). With two, it is the geometric mean
+// of that and of what the lengths of earlier directions foretell (DirectionLengths::left), because each is off by a
+// factor of its own. Where the iterations go on gaining as much as before and a material is loose at rest, the way
+// ahead counts as longer, because what is left then is mostly motion that directions hardly show. longer: a factor of
+// the way ahead. Overwrites the trial iterate and the workspace's scratch.
+double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& workspace,
+                       double longer = 1);
 
 // Writes motion_estimate() to the report: that of the whole model and, where it has several parts, one for each part.
 void report_motion_estimates(const Model& model, const StepInputs& inputs, const Positions& q,

@@ -53,8 +53,9 @@ void estimate_what_is_left(double before, StepReport& report) {
   }
 }
 
-// Returns how many times the last direction is left to go. Directions of Newton's method that hardly shrink point the
-// same way, in which the projected Hessian is too stiff: their lengths are a geometric series.
+// Returns how many times the way ahead, which is that of the last direction, is left to go. Directions of Newton's
+// method that hardly shrink point the same way, in which the projected Hessian is too stiff: their lengths are a
+// geometric series.
 double times_to_go(const StepReport& report) {
   constexpr double slowest = 0.95;
   if (report.newton_iterations < 2 || report.records.size() < 2) return 1;
@@ -95,7 +96,7 @@ void finish_by_newton(StepContext& c, Hardness hardness) {
   report.error_estimate = error_at_end(c.model, c.inputs, w, report.decrease + c.above_start);
   // Newton's method that ran out of iterations does not know how far it still was.
   const double before = report.stop_reason == StopReason::iterations ? report.motion_estimate : 0;
-  report.motion_estimate = std::max(before, times_to_go(report) * motion_estimate(c.model, c.inputs, c.state.x, w));
+  report.motion_estimate = std::max(before, motion_estimate(c.model, c.inputs, c.state.x, w, times_to_go(report)));
 }
 
 }  // namespace supple

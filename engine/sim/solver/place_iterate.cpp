@@ -47,6 +47,7 @@ void evaluate_start(const Model& model, const StepInputs& inputs, OpenWorkspace&
   }
   evaluate(model, w, w.current, Wanted::gradient);
   w.report.objective.push_back(w.current.g);
+  w.lengths.begin(model);
 }
 
 void forget_start(OpenWorkspace& w) {

@@ -14,7 +14,8 @@ void find_contacts_of(const Model& model, const StepInputs& inputs, OpenWorkspac
 // alone, friction that swings is eased (lagged_friction.h).
 void find_trial_contacts(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace);
 
-// Evaluates workspace.current with the contacts found there, and appends the value to the report's objectives.
+// Evaluates workspace.current, where a search begins, with the contacts found there. Appends the value to the report's
+// objectives, and forgets the lengths of earlier directions.
 void evaluate_start(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace);
 
 // Drops what was counted and noted of a first iterate that was evaluated but from which the step does not start.

@@ -72,7 +72,7 @@ void report_times(OpenWorkspace& w) {
       report.evaluate_ms + report.solve_ms + report.lbfgs_ms + report.collide_ms + report.matrix_ms + report.other_ms;
 }
 
-// Estimates how far the step is from its minimum, by its last direction.
+// Estimates how far the step is from its minimum, by its last directions.
 void estimate_errors(const StepContext& c) {
   StepReport& report = c.w.report;
   report.error_estimate = error_at_end(c.model, c.inputs, c.w, report.decrease + c.above_start);
@@ -125,7 +125,6 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   const Zone step_zone("step", model.name);
   Zone zone("begin step");
   w.prepare(model, inputs.solver);
-  w.lengths.begin(model);
   StepReport& report = w.report;
   clear(report);
   StepContext c{model, inputs, state, w, rule};
