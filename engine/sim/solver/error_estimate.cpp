@@ -150,17 +150,26 @@ class MotionEstimates {
         weight_(weight_of_most(model, w.report)),
         longest_(weight_ > 0 ? &longest_way(model, w) : nullptr) {}
 
+  // Returns the estimate by the way ahead alone.
+  double ahead(const Part& part) const { return way(part) / motion(part); }
+
   double of(const Part& part) const {
+    const double foretold = w_.lengths.left(&part - model_.parts.data());
+    return (foretold > 0 ? std::sqrt(way(part) * foretold) : way(part)) / motion(part);
+  }
+
+ private:
+  double way(const Part& part) const {
     double ahead = times_ * mass_length(model_, part, way_);
     if (longest_ != nullptr) {
       const double most = mass_length(model_, part, *longest_);
       if (ahead > 0 && most > ahead) ahead *= std::pow(most / ahead, weight_);
     }
-    const double foretold = w_.lengths.left(&part - model_.parts.data());
-    return (foretold > 0 ? std::sqrt(ahead * foretold) : ahead) / own_motion(model_, part, q_, w_.y, w_.current.x);
+    return ahead;
   }
 
- private:
+  double motion(const Part& part) const { return own_motion(model_, part, q_, w_.y, w_.current.x); }
+
   const Model& model_;
   const Positions& q_;
   const OpenWorkspace& w_;
@@ -190,7 +199,7 @@ double motion_estimate(const Model& model, const StepInputs& inputs, const Posit
 
 void report_motion_estimates(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
   StepReport& report = w.report;
-  report.motion_estimate = 0;
+  report.motion_estimate = report.motion_bound = 0;
   report.motion_estimates.clear();
   if (!has_way_ahead(report)) return;
   const MotionEstimates estimates(model, inputs, q, w, 1);
@@ -200,6 +209,8 @@ void report_motion_estimates(const Model& model, const StepInputs& inputs, const
     if (has_parts) report.motion_estimates.push_back(estimate);
     return estimate;
   });
+  report.motion_bound = std::max(report.motion_estimate,
+                                 largest_of_parts(model, [&](const Part& part) { return estimates.ahead(part); }));
 }
 
 bool is_near_enough(const Model& model, const StepInputs& inputs, const Positions* q, double above_start,
