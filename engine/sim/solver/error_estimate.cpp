@@ -150,26 +150,23 @@ class MotionEstimates {
         weight_(weight_of_most(model, w.report)),
         longest_(weight_ > 0 ? &longest_way(model, w) : nullptr) {}
 
-  // Returns the estimate by the way ahead alone.
-  double ahead(const Part& part) const { return way(part) / motion(part); }
+  struct OfPart {
+    double estimate;
+    double ahead;  // by the way ahead alone
+  };
 
-  double of(const Part& part) const {
-    const double foretold = w_.lengths.left(&part - model_.parts.data());
-    return (foretold > 0 ? std::sqrt(way(part) * foretold) : way(part)) / motion(part);
-  }
-
- private:
-  double way(const Part& part) const {
+  OfPart of(const Part& part) const {
+    const double motion = own_motion(model_, part, q_, w_.y, w_.current.x);
     double ahead = times_ * mass_length(model_, part, way_);
     if (longest_ != nullptr) {
       const double most = mass_length(model_, part, *longest_);
       if (ahead > 0 && most > ahead) ahead *= std::pow(most / ahead, weight_);
     }
-    return ahead;
+    const double foretold = w_.lengths.left(&part - model_.parts.data());
+    return {(foretold > 0 ? std::sqrt(ahead * foretold) : ahead) / motion, ahead / motion};
   }
 
-  double motion(const Part& part) const { return own_motion(model_, part, q_, w_.y, w_.current.x); }
-
+ private:
   const Model& model_;
   const Positions& q_;
   const OpenWorkspace& w_;
@@ -194,7 +191,7 @@ double motion_estimate(const Model& model, const StepInputs& inputs, const Posit
                        double longer) {
   if (!has_way_ahead(w.report)) return 0;
   const MotionEstimates estimates(model, inputs, q, w, longer);
-  return largest_of_parts(model, [&](const Part& part) { return estimates.of(part); });
+  return largest_of_parts(model, [&](const Part& part) { return estimates.of(part).estimate; });
 }
 
 void report_motion_estimates(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
@@ -205,12 +202,11 @@ void report_motion_estimates(const Model& model, const StepInputs& inputs, const
   const MotionEstimates estimates(model, inputs, q, w, 1);
   const bool has_parts = model.parts.size() > 1;
   report.motion_estimate = largest_of_parts(model, [&](const Part& part) {
-    const double estimate = estimates.of(part);
-    if (has_parts) report.motion_estimates.push_back(estimate);
-    return estimate;
+    const MotionEstimates::OfPart of_part = estimates.of(part);
+    if (has_parts) report.motion_estimates.push_back(of_part.estimate);
+    report.motion_bound = std::max({report.motion_bound, of_part.estimate, of_part.ahead});
+    return of_part.estimate;
   });
-  report.motion_bound = std::max(report.motion_estimate,
-                                 largest_of_parts(model, [&](const Part& part) { return estimates.ahead(part); }));
 }
 
 bool is_near_enough(const Model& model, const StepInputs& inputs, const Positions* q, double above_start,
