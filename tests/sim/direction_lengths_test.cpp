@@ -1,4 +1,4 @@
-// What the lengths of a step's directions foretell, on series of which the sum is known.
+// Tests what the lengths of a search's directions foretell, on series whose sum is known.
 #include "sim/solver/direction_lengths.h"
 
 #include <gtest/gtest.h>

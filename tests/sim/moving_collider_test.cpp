@@ -78,39 +78,19 @@ TEST(MovingCollider, ABodyThatTouchesACollidersFaceIsTakenAlongWhenItSetsOff) {
   }
 }
 
-// Expects that a film of a cube before a plate, which turns by 120 degrees in a step, has not failed. Seen from the
-// plate, the cube comes on an arc. It gets no more energy than a cube that flies as fast as the plate's edge; before,
-// it got hundreds of times as much.
-void expect_a_throw(const FilmMeasures& film) {
-  const double edge_speed = 0.3 * 2 * 3.14159265358979 * 10;
-  EXPECT_FALSE(film.failed);
-  EXPECT_LT(film.energy, 0.5 * 8 * std::pow(2 * edge_speed, 2));  // off a wall, at most twice the wall's speed
-}
-
+// A plate turns by 120 degrees in a step. Seen from it, the cube comes on an arc. It gets no more energy than a cube
+// that flies as fast as the plate's edge; before, it got hundreds of times as much.
 TEST(MovingCollider, APaddleThatTurnsFarInAStepThrowsTheBodyBeforeIt) {
+  const double edge_speed = 0.3 * 2 * 3.14159265358979 * 10;
   const Lame lame = Lame::from_young(1e5, 0.4);
   for (const Material& material :
-       {Material{NeoHookean::from(lame)}, Material{MooneyRivlin::from(lame)}, Material{Spline::preset_a(lame)}}) {
+       {Material{NeoHookean::from(lame)}, Material{FixedCorotated::from(lame)}, Material{MooneyRivlin::from(lame)},
+        Material{StableNeoHookean::from(lame)}, Material{Spline::preset_a(lame)}}) {
     SCOPED_TRACE(name_of(material));
     const FilmMeasures film = test::film_of_paddle(material, 1000, 10);
-    expect_a_throw(film);
+    ASSERT_FALSE(film.failed);
+    EXPECT_LT(film.energy, 0.5 * 8 * std::pow(2 * edge_speed, 2));  // off a wall, at most twice the wall's speed
     EXPECT_EQ(film.end_inverted, 0);
-  }
-}
-
-// The energy of these materials is finite where an element is turned inside out, so that it may stay so. It is chance
-// which cubes end with such elements: any small change of the film changes it.
-TEST(MovingCollider, APaddleThatTurnsFarInAStepLeavesMostBodiesWholeWithoutABarrier) {
-  const Lame lame = Lame::from_young(1e5, 0.4);
-  for (const Material& material : {Material{FixedCorotated::from(lame)}, Material{StableNeoHookean::from(lame)}}) {
-    SCOPED_TRACE(name_of(material));
-    int turned_out = 0;
-    for (int k = 0; k < 16; ++k) {
-      const FilmMeasures film = test::film_of_paddle(material, 900 + 15 * k, 10);
-      expect_a_throw(film);
-      turned_out += film.end_inverted > 0 ? 1 : 0;
-    }
-    EXPECT_LE(turned_out, 7);
   }
 }
 

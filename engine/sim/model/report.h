@@ -65,7 +65,7 @@ struct StepReport {
   double remaining_estimate = 0;         // g(end) - g*, from the decrement or from how decreases shrank [J]
   double error_estimate = 0;             // of equation 12's error, from remaining_estimate
   double motion_estimate = 0;            // of the error of motion (motion_error.h), by two forecasts
-  double motion_bound = 0;               // the larger of the estimate and of the way ahead alone
+  double motion_ahead = 0;               // the same by the way ahead alone
   std::vector<double> motion_estimates;  // the same of each part; empty for a model of one
   double slope = 0;                      // tr(grad^T d) of the last direction [J]
   double decrement = 0;                  // half of |slope| at the end: what a quadratic g would still lose [J]

@@ -196,7 +196,7 @@ double motion_estimate(const Model& model, const StepInputs& inputs, const Posit
 
 void report_motion_estimates(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
   StepReport& report = w.report;
-  report.motion_estimate = report.motion_bound = 0;
+  report.motion_estimate = report.motion_ahead = 0;
   report.motion_estimates.clear();
   if (!has_way_ahead(report)) return;
   const MotionEstimates estimates(model, inputs, q, w, 1);
@@ -204,7 +204,7 @@ void report_motion_estimates(const Model& model, const StepInputs& inputs, const
   report.motion_estimate = largest_of_parts(model, [&](const Part& part) {
     const MotionEstimates::OfPart of_part = estimates.of(part);
     if (has_parts) report.motion_estimates.push_back(of_part.estimate);
-    report.motion_bound = std::max({report.motion_bound, of_part.estimate, of_part.ahead});
+    report.motion_ahead = std::max(report.motion_ahead, of_part.ahead);
     return of_part.estimate;
   });
 }
@@ -221,7 +221,8 @@ bool is_still(const Model& model, const StepInputs& inputs, const Positions& q, 
   const SolverSettings& solver = inputs.solver;
   if (solver.still <= 0 || solver.levels < 2) return false;
   if (way_in_sizes(model, w.direction) * times_ahead(w.report) >= solver.still) return false;
-  return motion_estimate(model, inputs, q, w) < small && error_at_end(model, inputs, w, gained) < small;
+  report_motion_estimates(model, inputs, q, w);
+  return w.report.motion_ahead < small && error_at_end(model, inputs, w, gained) < small;
 }
 
 }  // namespace supple

@@ -61,7 +61,7 @@ double motion_estimate(const Model& model, const StepInputs& inputs, const Posit
                        double longer = 1);
 
 // Writes motion_estimate() to the report: that of the whole model and, where it has several parts, one for each part.
-// Writes the larger of it and of the way ahead alone to StepReport::motion_bound.
+// Writes the estimate by the way ahead alone to StepReport::motion_ahead; remedies of hard steps go by it.
 void report_motion_estimates(const Model& model, const StepInputs& inputs, const Positions& q,
                              OpenWorkspace& workspace);
 
