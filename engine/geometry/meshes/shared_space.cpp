@@ -52,7 +52,7 @@ bool cross(const Boxed& a, const Boxed& b) {
   return false;
 }
 
-Bounds bounds_of(std::span<const Boxed> list) {
+Bounds box_around(std::span<const Boxed> list) {
   Bounds box;
   for (const Boxed& one : list) {
     box.include(one.lower);
@@ -73,8 +73,8 @@ std::span<Boxed> those_near(std::span<Boxed> list, const Bounds& box) {
 // longer one is halved, until few pairs are left. The order of both changes.
 bool any_cross(std::span<Boxed> a, std::span<Boxed> b) {
   constexpr std::size_t few_pairs = 64;
-  a = those_near(a, bounds_of(b));
-  b = those_near(b, bounds_of(a));
+  a = those_near(a, box_around(b));
+  b = those_near(b, box_around(a));
   if (a.empty() || b.empty()) return false;
   if (a.size() < b.size()) std::swap(a, b);
   if (a.size() * b.size() <= few_pairs) {
@@ -85,7 +85,7 @@ bool any_cross(std::span<Boxed> a, std::span<Boxed> b) {
     });
   }
   int axis = 0;
-  bounds_of(a).extent().maxCoeff(&axis);
+  box_around(a).extent().maxCoeff(&axis);
   const std::size_t half = a.size() / 2;
   std::nth_element(a.begin(), a.begin() + std::ptrdiff_t(half), a.end(), [axis](const Boxed& one, const Boxed& other) {
     return one.lower[axis] + one.upper[axis] < other.lower[axis] + other.upper[axis];

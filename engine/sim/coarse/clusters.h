@@ -14,6 +14,8 @@
 
 namespace supple {
 
+inline constexpr int rigid_motions = 6;  // of a cluster: it shifts along and turns about each axis
+
 struct Clusters {
   static constexpr int most_of_vertex = 3;
 

@@ -12,7 +12,6 @@
 namespace supple {
 namespace {
 
-constexpr int rigid_motions = CoarseSystem::motions_of_cluster;
 using MotionBlock = Eigen::Matrix<double, rigid_motions, rigid_motions>;
 
 // Expresses a block in the motions of its clusters about their own centres, along the world's axes. turn: the rotation

@@ -14,14 +14,13 @@ namespace {
 
 constexpr int functions = 4;                // of a cluster: w_c, and w_c (X - O)_j
 constexpr int coordinates = 3 * functions;  // coordinates of displacements that are made of these functions
-constexpr int motions = CoarseSystem::motions_of_cluster;
 
 using FunctionBlock = Eigen::Matrix<double, coordinates, coordinates>;
 
 // Returns how the rigid motions of a cluster are made of its functions: the shift along e_k is w e_k, and the turn e_k
 // x (X - O) w is the sum of (e_k x e_j) w (X - O)_j.
-Eigen::Matrix<double, coordinates, motions> motions_by_functions() {
-  Eigen::Matrix<double, coordinates, motions> p;
+Eigen::Matrix<double, coordinates, rigid_motions> motions_by_functions() {
+  Eigen::Matrix<double, coordinates, rigid_motions> p;
   p.setZero();
   for (int k = 0; k < 3; ++k) {
     p(k, k) = 1;
@@ -108,7 +107,7 @@ void CoarseSystem::make_structure(const Model& model) {
   structure_ = model.structure;
   clusters_ = make_clusters(model, wanted_clusters(model));
   for (int part = 0; part < parts(); ++part)
-    part_of_.insert(part_of_.end(), std::size_t(columns_of(part) / motions_of_cluster), part);
+    part_of_.insert(part_of_.end(), std::size_t(columns_of(part) / rigid_motions), part);
   make_groups(model);
   add_gradients(model);
   sheets_.make_structure(model, clusters_);
@@ -124,7 +123,7 @@ void CoarseSystem::make_pieces(const Model& model) {
     const int end = part.first_free + part.free;
     for (int first = part.first_free; first < end; first += vertices_a_chunk) {
       pieces_.push_back({p, first, std::min(end, first + vertices_a_chunk), numbers});
-      numbers += numbers_a_cluster * std::size_t(columns_of(p) / motions_of_cluster);
+      numbers += numbers_a_cluster * std::size_t(columns_of(p) / rigid_motions);
     }
   }
   partial_.resize(numbers);
@@ -321,24 +320,24 @@ Eigen::MatrixXd CoarseSystem::point_products(const Model& model, const Group& gr
 }
 
 void CoarseSystem::set_values(const Model& model, Group& group) const {
-  static const Eigen::Matrix<double, coordinates, motions> by_functions = motions_by_functions();
+  static const Eigen::Matrix<double, coordinates, rigid_motions> by_functions = motions_by_functions();
   const auto count = static_cast<Eigen::Index>(group.clusters.size());
   const double elastic = model.scheme.energy * model.scheme.theta * model.scheme.theta;
   const double drag = model.parts[group.part].drag;
   const RegionStiffness stiffness = stiffness_of(model, group.region);
   const Eigen::MatrixXd points = point_products(model, group);
   group.stiffness = model.stiffness[group.region].k;
-  group.constant.resize(motions * count, motions * count);
-  group.hessian.resize(motions * count, motions * count);
+  group.constant.resize(rigid_motions * count, rigid_motions * count);
+  group.hessian.resize(rigid_motions * count, rigid_motions * count);
   for (Eigen::Index c = 0; c < count; ++c) {
     for (Eigen::Index d = 0; d < count; ++d) {
       const FunctionBlock gradients = group.gradients.block<coordinates, coordinates>(coordinates * c, coordinates * d);
       const FunctionBlock by_constant = constant_stiffness(gradients, stiffness.constant);
       const FunctionBlock in_both =
           point_stiffness(points.block<functions, functions>(functions * c, functions * d)) + drag * by_constant;
-      group.constant.block<motions, motions>(motions * c, motions * d) =
+      group.constant.block<rigid_motions, rigid_motions>(rigid_motions * c, rigid_motions * d) =
           by_functions.transpose() * (in_both + elastic * by_constant) * by_functions;
-      group.hessian.block<motions, motions>(motions * c, motions * d) =
+      group.hessian.block<rigid_motions, rigid_motions>(rigid_motions * c, rigid_motions * d) =
           by_functions.transpose() * (in_both + elastic * rest_stiffness(gradients, stiffness)) * by_functions;
     }
   }

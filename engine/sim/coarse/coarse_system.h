@@ -26,8 +26,6 @@ namespace supple {
 
 class CoarseSystem {
  public:
-  static constexpr int motions_of_cluster = 6;
-
   // Computes the clusters and groups of a model and their values; does nothing if they are those of this model already.
   // The bits of the result do not depend on earlier models.
   void make(const Model& model);
@@ -39,9 +37,9 @@ class CoarseSystem {
 
   // Returns the number of parts.
   int parts() const { return static_cast<int>(clusters_.first.size()) - 1; }
-  int columns() const { return motions_of_cluster * clusters_.count(); }  // r
+  int columns() const { return rigid_motions * clusters_.count(); }  // r
   // The columns of a part are first_column(part) .. first_column(part + 1) - 1; cloth of springs has none.
-  int first_column(int part) const { return motions_of_cluster * clusters_.first[part]; }
+  int first_column(int part) const { return rigid_motions * clusters_.first[part]; }
   int columns_of(int part) const { return first_column(part + 1) - first_column(part); }
   // Tells whether the last turn_to has made matrices for a part.
   bool has_matrices(int part) const { return blocks_[part].is_made; }

@@ -23,9 +23,9 @@ void add_eight(double* to, const Eight& numbers) {
   __builtin_memcpy(to, &sum, sizeof sum);
 }
 
-// Rigid motions of a cluster, and the numbers of a row: one for each motion, and two zeros.
-constexpr int motions = 6, row_length = 8;
-constexpr std::size_t longer_numbers = motions * row_length;
+// The numbers of a row: one for each rigid motion of a cluster, and two zeros.
+constexpr int row_length = 8;
+constexpr std::size_t longer_numbers = rigid_motions * row_length;
 constexpr std::size_t product_numbers = 4 * row_length;  // rows 1, x, y, z; columns 1, x, y, z of A, and of H
 
 // Returns how far an end of an edge moves along the edge by a unit of each rigid motion about the origin: the edge's
@@ -38,7 +38,7 @@ Eight line_of(const Vec3& from, const Vec3& to) {
   return Eight{n.x(), n.y(), n.z(), moment.x(), moment.y(), moment.z(), 0, 0};
 }
 
-using Block = Eigen::Matrix<double, motions, motions>;
+using Block = Eigen::Matrix<double, rigid_motions, rigid_motions>;
 
 // Returns the sum of a_ij E_i^T E_j, where E_i = [1, -[r_i]x] moves vertex i, from the sums of a_ij (1, r_i)(1, r_j)^T.
 Block block_of(const double* products) {
@@ -80,7 +80,7 @@ void SheetStiffness::add_longer_edges(const Sheet& sheet, const Vec3& origin, co
     for (int c = 0; c < triangle.shares; ++c) {
       for (int d = c; d < triangle.shares; ++d) {
         double* to = &longer_[longer_numbers * (std::size_t(shares[c].cluster) * sheet.clusters + shares[d].cluster)];
-        for (int i = 0; i < motions; ++i, to += row_length)
+        for (int i = 0; i < rigid_motions; ++i, to += row_length)
           add_eight(to, rows[c][0][i] * rows[d][0] + rows[c][1][i] * rows[d][1] + rows[c][2][i] * rows[d][2]);
       }
     }
@@ -131,12 +131,14 @@ void SheetStiffness::make_matrices(int part, const Vec3* centers, const Position
     for (int d = 0; d <= c; ++d) {
       const Mat3 s_d = cross_matrix(centers[d] - centers[0]);
       const std::size_t pair = std::size_t(c) * sheet.clusters + d;
-      const Eigen::Map<const Eigen::Matrix<double, motions, motions, Eigen::RowMajor>, 0,
+      const Eigen::Map<const Eigen::Matrix<double, rigid_motions, rigid_motions, Eigen::RowMajor>, 0,
                        Eigen::OuterStride<row_length>>
           longer(&longer_[longer_numbers * pair]);
       const double* products = &products_[product_numbers * pair];
-      constant.block<motions, motions>(motions * c, motions * d) = moved(block_of(products), s_c, s_d);
-      hessian.block<motions, motions>(motions * c, motions * d) = moved(block_of(products + 4) + longer, s_c, s_d);
+      constant.block<rigid_motions, rigid_motions>(rigid_motions * c, rigid_motions * d) =
+          moved(block_of(products), s_c, s_d);
+      hessian.block<rigid_motions, rigid_motions>(rigid_motions * c, rigid_motions * d) =
+          moved(block_of(products + 4) + longer, s_c, s_d);
     }
   }
 }
