@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "baselines/reference.h"
 #include "geometry/triangles/surface_thickness.h"
@@ -103,30 +104,41 @@ TEST(ErrorEstimate, CountsFromThePredictionInContactToo) {
   EXPECT_LT(std::abs(sum / count), 0.7);
 }
 
-// A cube that lands. With one level, directions resist turning, so that their lengths foretell nothing.
-TEST(ErrorEstimate, OfMotionIsTheMeanOfTwoForecastsWithTwoLevels) {
-  for (const int levels : {1, 2}) {
-    test::ContactScene scene(test::cube(3), {{"ground", test::shape_of(HalfSpace{Vec3::UnitY(), 0})}},
-                             Vec3(0, 0.13, 0));
-    scene.state.v.rowwise() = Eigen::RowVector3d(0.2, -1, 0.1);
-    scene.inputs.solver.levels = levels;
-    scene.inputs.solver.newton = false;
-    const Model& model = scene.model;
-    OpenWorkspace w;
-    int count = 0;
-    for (int frame = 0; frame < 12; ++frame) {
-      const Positions q = scene.state.x;
-      const double estimate = step(model, scene.inputs, scene.state, w).motion_estimate;
-      const double foretold = w.lengths.left(0) / own_motion(model, model.parts[0], q, w.y, w.current.x);
-      const double ahead = motion_ahead(model, scene.inputs, q, w);
-      ASSERT_EQ(foretold > 0, levels > 1 && w.report.iterations > 1) << frame;
-      if (w.report.iterations < 2) continue;
-      const double expected = levels > 1 ? std::sqrt(ahead * foretold) : ahead;
-      EXPECT_NEAR(estimate, expected, 1e-9 * expected) << levels << ", frame " << frame;
-      ++count;
-    }
-    EXPECT_GT(count, 5);
+// Plays a body that falls onto the ground, and compares each step's estimate with what joined() makes of the way ahead
+// and of what lengths of directions foretell.
+void expect_joined(const BodyDescription& body, int levels, const std::function<double(double, double)>& joined) {
+  test::ContactScene scene(body, {{"ground", test::shape_of(HalfSpace{Vec3::UnitY(), 0})}}, Vec3(0, 0.13, 0));
+  scene.state.v.rowwise() = Eigen::RowVector3d(0.2, -1, 0.1);
+  scene.inputs.solver.levels = levels;
+  scene.inputs.solver.newton = false;
+  const Model& model = scene.model;
+  OpenWorkspace w;
+  int count = 0;
+  for (int frame = 0; frame < 12; ++frame) {
+    const Positions q = scene.state.x;
+    const double estimate = step(model, scene.inputs, scene.state, w).motion_estimate;
+    const double foretold = w.lengths.left(0) / own_motion(model, model.parts[0], q, w.y, w.current.x);
+    const double ahead = motion_ahead(model, scene.inputs, q, w);
+    ASSERT_EQ(foretold > 0, w.report.iterations > 1) << frame;
+    if (w.report.iterations < 2) continue;
+    const double expected = joined(ahead, foretold);
+    EXPECT_NEAR(estimate, expected, 1e-9 * expected) << levels << ", frame " << frame;
+    ++count;
   }
+  EXPECT_GT(count, 5);
+}
+
+TEST(ErrorEstimate, OfMotionOfASolidIsTheMeanOfTwoForecasts) {
+  for (const int levels : {1, 2}) {
+    expect_joined(test::cube(3), levels,
+                  [](double ahead, double foretold) { return std::max(ahead / 4, std::sqrt(ahead * foretold)); });
+  }
+}
+
+TEST(ErrorEstimate, OfMotionOfClothIsTheSumOfTwoForecasts) {
+  for (const BodyDescription& cloth :
+       {test::spring_net(6), test::sheet({0.2, 0.2}, {6, 6}, {test::all_membranes().front(), 0.01})})
+    expect_joined(cloth, 2, [](double ahead, double foretold) { return ahead + foretold; });
 }
 
 // What a workspace remembers of the directions of an earlier step is not taken for those of the next.

@@ -137,6 +137,18 @@ const Positions& longest_way(const Model& model, OpenWorkspace& w) {
   return w.scratch;
 }
 
+// Joins two forecasts of how far a part still has to go, of which the second may be missing (0). Each is off by a
+// factor of its own, so that their geometric mean is nearer than either. Directions that resist turning show nothing of
+// a turn, and their lengths foretell none, so that the way ahead counts by a quarter at least. Cloth bends so easily
+// that each forecast sees motions that the other does not, and they add up
+// (docs/lab/2026-11-29-estimates-for-cloth.md).
+double joined_forecasts(const Part& part, double ahead, double foretold) {
+  constexpr double least_share = 0.25;
+  if (foretold <= 0) return ahead;
+  if (!part.solid) return ahead + foretold;
+  return std::max(least_share * ahead, std::sqrt(ahead * foretold));
+}
+
 // Estimates the error of motion of each part of a model.
 class MotionEstimates {
  public:
@@ -163,7 +175,7 @@ class MotionEstimates {
       if (ahead > 0 && most > ahead) ahead *= std::pow(most / ahead, weight_);
     }
     const double foretold = w_.lengths.left(&part - model_.parts.data());
-    return {(foretold > 0 ? std::sqrt(ahead * foretold) : ahead) / motion, ahead / motion};
+    return {joined_forecasts(part, ahead, foretold) / motion, ahead / motion};
   }
 
  private:

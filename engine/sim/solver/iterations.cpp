@@ -112,7 +112,7 @@ double take_contacts(OpenWorkspace& w) {
 void accept(const Model& model, const StepInputs& inputs, OpenWorkspace& w, SearchRule& rule, double before,
             Change change, IterationRecord& record) {
   const TimedPhase timed(w.clock, Phase::lbfgs, "accept");
-  if (inputs.solver.levels > 1) w.lengths.add(model, w.direction, record.alpha);
+  w.lengths.add(model, w.direction, record.alpha);
   rule.accepted(model, inputs, w);
   if (may_touch(inputs)) change.value += take_contacts(w);
   const double learned = w.current.g - before;

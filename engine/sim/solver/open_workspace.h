@@ -72,9 +72,7 @@ struct OpenWorkspace {
   std::vector<Positions> step_pairs, gradient_pairs;  // s [m] and t [N]
   std::vector<double> products;                       // s_i . t_j, window x window [J]
 
-  // Lengths of the directions of the present search, and of Newton's method after it. There are none with one level,
-  // because its directions resist turning, and their lengths do not tell what is left of it.
-  DirectionLengths lengths;
+  DirectionLengths lengths;  // of the directions of the present search, and of Newton's method after it
 
   ContactWork contact;
   ContactCorrection correction;
