@@ -22,7 +22,8 @@ struct Bodies {
   Eigen::MatrixXd inverse;
   std::vector<int> first_column{0};  // of coarse motions, by part
 
-  Bodies(int count, int size) {
+  // columns: of motions, for each part that has any
+  Bodies(int count, int size, int columns = 4) {
     std::vector<Eigen::Triplet<double>> entries;
     for (int p = 0; p < count; ++p) {
       const int first = p * size;
@@ -36,7 +37,7 @@ struct Bodies {
       part.first_free = first;
       part.free = size;
       parts.push_back(part);
-      first_column.push_back(first_column.back() + (p % 3 == 1 ? 0 : 4));
+      first_column.push_back(first_column.back() + (p % 3 == 1 ? 0 : columns));
     }
     system.id = 1;
     system.matrix.resize(count * size, count * size);
@@ -229,6 +230,7 @@ TEST(Capacitance, IsThatOfTheDenseSystemWhateverComesAndGoes) {
   for (const std::vector<Vec3>& axes : {std::vector<Vec3>(), world_axes, {Vec3::UnitX(), Vec3(0.6, 0.8, 0)}}) {
     expect_dense_whatever_comes_and_goes(Bodies(8, 30), axes);
     expect_dense_whatever_comes_and_goes(Bodies(1, 240), axes);
+    expect_dense_whatever_comes_and_goes(Bodies(1, 240, 50), axes);  // now more directions than motions, and now fewer
   }
 }
 

@@ -12,12 +12,25 @@
 namespace supple {
 namespace {
 
+// Holds a vector in a register, its fourth number 0; the compiler splits it where registers are narrower.
+typedef double Four __attribute__((vector_size(4 * sizeof(double))));
+
+Four load_three(const double* from) { return Four{from[0], from[1], from[2], 0}; }
+
+Four cross(const Four& a, const Four& b) {
+  constexpr std::int64_t x = 0, y = 1, z = 2, w = 3;
+  typedef std::int64_t Order __attribute__((vector_size(4 * sizeof(std::int64_t))));
+  const Order next = {y, z, x, w}, last = {z, x, y, w};
+  return __builtin_shuffle(a, next) * __builtin_shuffle(b, last) -
+         __builtin_shuffle(a, last) * __builtin_shuffle(b, next);
+}
+
 using MotionBlock = Eigen::Matrix<double, rigid_motions, rigid_motions>;
 
 // Expresses a block in the motions of its clusters about their own centres, along the world's axes. turn: the rotation
 // from the group's frame to the world's; s_c, s_d: the ways from both clusters' centres to the group's, as cross
 // products.
-MotionBlock turned(const Eigen::Ref<const MotionBlock>& block, const Mat3& turn, const Mat3& s_c, const Mat3& s_d) {
+MotionBlock turned(const MotionBlock& block, const Mat3& turn, const Mat3& s_c, const Mat3& s_d) {
   const Mat3 b11 = turn * block.block<3, 3>(0, 0) * turn.transpose();
   const Mat3 b12 = turn * block.block<3, 3>(0, 3) * turn.transpose();
   const Mat3 b21 = turn * block.block<3, 3>(3, 0) * turn.transpose();
@@ -29,6 +42,19 @@ MotionBlock turned(const Eigen::Ref<const MotionBlock>& block, const Mat3& turn,
   result.block<3, 3>(3, 0) = b21 + s_c * b11;
   result.block<3, 3>(3, 3) = b22 - b21 * s_d + s_c * upper;
   return result;
+}
+
+// Returns the sum of x_v g_v^T over some vertices. Those beyond the end of x do not count.
+Mat3 gradient_of(const std::vector<std::int32_t>& vertices, const std::vector<Vec3>& gradients, const Positions& x) {
+  Four columns[3] = {};
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (vertices[i] >= x.rows()) continue;
+    const Four at = load_three(x.data() + 3 * std::size_t(vertices[i]));
+    for (int j = 0; j < 3; ++j) columns[j] += at * gradients[i][j];
+  }
+  Mat3 sum;
+  for (int j = 0; j < 3; ++j) sum.col(j) << columns[j][0], columns[j][1], columns[j][2];
+  return sum;
 }
 
 // Holds the rotation in the polar decomposition of a group's mean deformation gradient, and its extreme stretches.
@@ -56,14 +82,9 @@ void CoarseSystem::add_group(const Group& group, const Positions& x) {
   // came to rest inside out; with 0.75 and 1.35, a ball of jelly that squashes as it rolls was three times as far.
   constexpr double least_stretch = 0.5, most_stretch = 2;
   Block& to_part = blocks_[group.part];
-  Mat3 gradient = Mat3::Zero();
   Vec3 center = Vec3::Zero();
-  for (std::size_t i = 0; i < group.vertex.size(); ++i) {
-    const Vec3 at = x.row(group.vertex[i]).transpose();
-    gradient += at * group.gradient[i].transpose();
-    center += group.share[i] * at;
-  }
-  const GroupPose pose(gradient);
+  for (std::size_t i = 0; i < group.vertex.size(); ++i) center += group.share[i] * x.row(group.vertex[i]).transpose();
+  const GroupPose pose(gradient_of(group.vertex, group.gradient, x));
   to_part.is_made = pose.least > least_stretch && pose.most < most_stretch;
   if (!to_part.is_made) return;
   shift_.clear();
@@ -102,23 +123,6 @@ bool CoarseSystem::turn_to(const Positions& x) {
   }
   return std::any_of(blocks_.begin(), blocks_.end(), [](const Block& block) { return block.is_made; });
 }
-
-namespace {
-
-// Holds a vector in a register, its fourth number 0; the compiler splits it where registers are narrower.
-typedef double Four __attribute__((vector_size(4 * sizeof(double))));
-
-Four load_three(const double* from) { return Four{from[0], from[1], from[2], 0}; }
-
-Four cross(const Four& a, const Four& b) {
-  constexpr std::int64_t x = 0, y = 1, z = 2, w = 3;
-  typedef std::int64_t Order __attribute__((vector_size(4 * sizeof(std::int64_t))));
-  const Order next = {y, z, x, w}, last = {z, x, y, w};
-  return __builtin_shuffle(a, next) * __builtin_shuffle(b, last) -
-         __builtin_shuffle(a, last) * __builtin_shuffle(b, next);
-}
-
-}  // namespace
 
 // Torques are summed about the first centre of the part.
 void CoarseSystem::sum_forces(const Model& model, const Piece& piece, const Positions& x, const Positions& forces,
@@ -210,12 +214,8 @@ const std::vector<Vec3>& CoarseSystem::prolong(const Model& model, const Positio
 void CoarseSystem::find_turns(const Positions& x, const Positions& motion, std::vector<ClusterTurn>& turns) const {
   turns.assign(clusters_.count(), {});
   for (const Group& group : groups_) {
-    Mat3 gradient = Mat3::Zero(), change = Mat3::Zero();
-    for (std::size_t i = 0; i < group.vertex.size(); ++i) {
-      gradient += x.row(group.vertex[i]).transpose() * group.gradient[i].transpose();
-      if (group.vertex[i] < motion.rows())
-        change += motion.row(group.vertex[i]).transpose() * group.gradient[i].transpose();
-    }
+    const Mat3 gradient = gradient_of(group.vertex, group.gradient, x),
+               change = gradient_of(group.vertex, group.gradient, motion);
     Vec3 torque = Vec3::Zero();
     for (int j = 0; j < 3; ++j) torque += gradient.col(j).cross(change.col(j));
     const Mat3 products = gradient * gradient.transpose();

@@ -8,8 +8,9 @@
 // The second level of directions puts B^-1 = A^-1 + Z D Z^T in the place of A^-1. The matrix is then C + W D W^T, where
 // C is K^-1 + N^T A^-1 N, and W = N^T Z. For several parts this matrix has the blocks of C. It is factored as it
 // stands, whenever Z moves. For a body alone C keeps its factor and its three systems, and the rest is added by (C + W
-// D W^T)^-1 = C^-1 - C^-1 W (1 + D W^T C^-1 W)^-1 D W^T C^-1 (Woodbury). With this formula for several parts, a row of
-// 80 cubes takes 3.5 times as long, because all columns of W are coupled there.
+// D W^T)^-1 = C^-1 - C^-1 W (1 + D W^T C^-1 W)^-1 D W^T C^-1 (Woodbury), or by (1 + C^-1 W D W^T)^-1 C^-1 where there
+// are fewer directions than columns of W. With the first formula for several parts, a row of 80 cubes takes 3.5 times
+// as long, because all columns of W are coupled there.
 #pragma once
 
 #include <Eigen/LU>
@@ -99,6 +100,8 @@ class Capacitance {
   void know_motions();
   bool extend(Threads* threads);
   void couple_motions();
+  void couple_few();
+  void solve_without_motions(Eigen::VectorXf& answer) const;
   void keep_rows(const std::vector<Eigen::Index>& place);
   void fill(std::span<const Eigen::Index> rows, std::span<const Eigen::Index> columns, Eigen::Index shift,
             Eigen::Ref<RowMatrix> block) const;
@@ -121,11 +124,12 @@ class Capacitance {
   std::vector<std::size_t> begin_;  // by direction: where its numbers begin in the next two, and the end
   std::vector<float> row_, row_times_;
   // One part has all columns of W here.
-  RowMatrix rows_;                             // W
-  std::vector<char> known_;                    // by direction: whether its row is known
-  std::size_t lists_counted_ = 0;              // lists whose products are in `between_`
-  Eigen::MatrixXd between_;                    // W^T C^-1 W, for the matrix C without the motions
-  Eigen::PartialPivLU<Eigen::MatrixXd> both_;  // factor of 1 + D W^T C^-1 W
+  RowMatrix rows_;                 // W
+  std::vector<char> known_;        // by direction: whether its row is known
+  bool are_few_ = false;           // fewer directions than columns
+  std::size_t lists_counted_ = 0;  // lists whose products are in `between_`, where they are not few
+  Eigen::MatrixXd between_;        // W^T C^-1 W, for the matrix C without the motions; of few: 1 + C^-1 W D W^T
+  Eigen::PartialPivLU<Eigen::MatrixXd> both_;  // factor of 1 + D W^T C^-1 W; of few: of 1 + C^-1 W D W^T
 };
 
 }  // namespace supple

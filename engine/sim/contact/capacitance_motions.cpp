@@ -89,27 +89,50 @@ void Capacitance::add_products_of_motions(std::span<const Eigen::Index> rows, st
 // Prepares solves with motions for a body alone.
 void Capacitance::couple_motions() {
   if (motions_ == nullptr || has_several_parts()) return;
-  bool is_new = lists_counted_ != lists_.size();
+  const int r = motions_->first_column.back();
+  bool is_new = lists_counted_ != lists_.size() || are_few_;
+  are_few_ = std::ssize(directions_) < r;
+  if (are_few_) return couple_few();
   for (std::size_t i = 0; i < lists_.size(); ++i) is_new |= factors_[i].multiply_rows(rows_);
   if (!is_new) return;
   lists_counted_ = lists_.size();
-  const int r = motions_->first_column.back();
   between_.setZero(r, r);
   for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].add_product(between_);
   between_.triangularView<Eigen::StrictlyUpper>() = between_.transpose();
   both_.compute(Eigen::MatrixXd::Identity(r, r) + motions_->difference(0) * between_);
 }
 
+// Makes the factor of 1 + C^-1 W D W^T. Its products have about count (count + r)^2 operations; those of the other form
+// have r^3 and more.
+void Capacitance::couple_few() {
+  const Eigen::Index count = std::ssize(directions_);
+  const Eigen::MatrixXd rows = rows_.cast<double>();
+  between_.noalias() = rows * motions_->difference(0) * rows.transpose();
+  Eigen::VectorXf column;
+  for (Eigen::Index j = 0; j < count; ++j) {
+    column = between_.col(j).cast<float>();
+    solve_without_motions(column);
+    between_.col(j) = column.cast<double>();
+  }
+  between_.diagonal().array() += 1;
+  both_.compute(between_);
+}
+
+void Capacitance::solve_without_motions(Eigen::VectorXf& answer) const {
+  for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].solve(answer);
+}
+
 void Capacitance::solve(Eigen::VectorXf& answer) const {
-  const auto solve_without = [this](Eigen::VectorXf& numbers) {
-    for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].solve(numbers);
-  };
-  solve_without(answer);
+  solve_without_motions(answer);
   if (motions_ == nullptr || has_several_parts()) return;
+  if (are_few_) {
+    answer = both_.solve(answer.cast<double>()).cast<float>();
+    return;
+  }
   const Eigen::VectorXd seen = (rows_.transpose() * answer).cast<double>();
   const Eigen::VectorXd product = motions_->difference(0) * seen;
   Eigen::VectorXf back = rows_ * both_.solve(product).cast<float>();
-  solve_without(back);
+  solve_without_motions(back);
   answer -= back;
 }
 
