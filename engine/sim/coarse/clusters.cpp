@@ -89,9 +89,12 @@ EdgeGraph graph_of(const Model& model, const Part& part, EdgeList edges) {
   return graph;
 }
 
-// Computes the distances of all vertices from one, along edges (Dijkstra 1959) [m].
-std::vector<double> distances_from(const EdgeGraph& graph, std::int32_t start) {
+// Computes the distances from one vertex, along edges, of all vertices that are clearly nearer to it than their limit
+// (Dijkstra 1959) [m]; the others are unreached. limits: the distances from other vertices. A shortest way to a vertex
+// within its limit leads only over such vertices.
+std::vector<double> distances_from(const EdgeGraph& graph, std::int32_t start, const std::vector<double>& limits) {
   std::vector<double> distance(graph.begin.size() - 1, unreached);
+  if (!is_clearly_less(0, limits[start])) return distance;
   std::priority_queue<std::pair<double, std::int32_t>, std::vector<std::pair<double, std::int32_t>>, std::greater<>>
       front;
   distance[start] = 0;
@@ -102,12 +105,17 @@ std::vector<double> distances_from(const EdgeGraph& graph, std::int32_t start) {
     if (at > distance[v]) continue;
     for (std::int32_t e = graph.begin[v]; e < graph.begin[v + 1]; ++e) {
       const double next = at + graph.length[e];
-      if (next >= distance[graph.neighbor[e]]) continue;
-      distance[graph.neighbor[e]] = next;
-      front.emplace(next, graph.neighbor[e]);
+      const std::int32_t to = graph.neighbor[e];
+      if (next >= distance[to] || !is_clearly_less(next, limits[to])) continue;
+      distance[to] = next;
+      front.emplace(next, to);
     }
   }
   return distance;
+}
+
+std::vector<double> without_limits(const EdgeGraph& graph) {
+  return std::vector<double>(graph.begin.size() - 1, unreached);
 }
 
 // Holds the distances of all vertices from each centre, by centre [m].
@@ -128,15 +136,15 @@ std::int32_t furthest_vertex(const EdgeGraph& graph, const std::vector<double>& 
 // Takes again and again the vertex that is furthest from all centres (Gonzalez 1985, "Clustering to minimize the
 // maximum intercluster distance"), beginning with an end of the body.
 std::vector<std::int32_t> spread_centers(const EdgeGraph& graph, int count) {
-  std::vector<double> nearest(graph.begin.size() - 1, unreached);
+  std::vector<double> nearest = without_limits(graph);
   const std::int32_t any = furthest_vertex(graph, nearest);
-  std::vector<double> from_any = distances_from(graph, any);
+  std::vector<double> from_any = distances_from(graph, any, nearest);
   std::replace(from_any.begin(), from_any.end(), unreached, -1.0);
   std::vector<std::int32_t> centers;
   std::int32_t next = furthest_vertex(graph, from_any);
   while (std::ssize(centers) < count) {
     centers.push_back(next);
-    const std::vector<double> distance = distances_from(graph, next);
+    const std::vector<double> distance = distances_from(graph, next, nearest);
     for (std::size_t v = 0; v < nearest.size(); ++v) nearest[v] = std::min(nearest[v], distance[v]);
     next = furthest_vertex(graph, nearest);
     if (nearest[next] == 0) break;
@@ -146,22 +154,25 @@ std::vector<std::int32_t> spread_centers(const EdgeGraph& graph, int count) {
 
 Distances all_distances(const EdgeGraph& graph, const std::vector<std::int32_t>& centers) {
   Distances distances;
-  for (const std::int32_t center : centers) distances.push_back(distances_from(graph, center));
+  for (const std::int32_t center : centers) distances.push_back(distances_from(graph, center, without_limits(graph)));
   return distances;
 }
 
 // Moves each centre to that one of the vertices nearest to it which is closest to their centre of mass (Lloyd 1982).
-void center_centers(const EdgeGraph& graph, const Distances& distances, std::vector<std::int32_t>& centers) {
+void center_centers(const EdgeGraph& graph, std::vector<std::int32_t>& centers) {
   std::vector<std::int32_t> owner(graph.vertices(), -1);
+  std::vector<double> nearest = without_limits(graph);
+  for (std::size_t c = 0; c < centers.size(); ++c) {
+    const std::vector<double> distance = distances_from(graph, centers[c], nearest);
+    for (int v = 0; v < graph.vertices(); ++v) {
+      if (distance[v] == unreached) continue;
+      nearest[v] = distance[v];
+      owner[v] = static_cast<std::int32_t>(c);
+    }
+  }
   std::vector<Vec3> sum(centers.size(), Vec3::Zero());
   std::vector<double> mass(centers.size(), 0.0);
   for (int v = 0; v < graph.vertices(); ++v) {
-    double least = unreached;
-    for (std::size_t c = 0; c < centers.size(); ++c) {
-      if (!is_clearly_less(distances[c][v], least)) continue;
-      least = distances[c][v];
-      owner[v] = static_cast<std::int32_t>(c);
-    }
     if (owner[v] < 0) continue;
     sum[owner[v]] += graph.mass[v] * graph.rest.row(v).transpose();
     mass[owner[v]] += graph.mass[v];
@@ -212,11 +223,8 @@ VertexWeights weights_of(const Distances& distances, std::size_t v) {
 void add_clusters(const Part& part, const EdgeGraph& graph, int count, Clusters& clusters) {
   constexpr int rounds_of_centering = 3;
   std::vector<std::int32_t> centers = spread_centers(graph, count);
-  Distances distances = all_distances(graph, centers);
-  for (int round = 0; round < rounds_of_centering; ++round) {
-    center_centers(graph, distances, centers);
-    distances = all_distances(graph, centers);
-  }
+  for (int round = 0; round < rounds_of_centering; ++round) center_centers(graph, centers);
+  const Distances distances = all_distances(graph, centers);
   const std::int32_t first = clusters.count();
   for (const std::int32_t center : centers) clusters.center.push_back(joined_vertex(part, center));
   for (int v = 0; v < graph.vertices(); ++v) {

@@ -75,10 +75,12 @@ void find_first_forces(const Model& model, const StepInputs& inputs, const State
   later.time = model.time_step;  // not 0, so that this step does not look for first forces itself
   OpenWorkspace own_workspace;
   own_workspace.threads = w.threads;
+  std::swap(own_workspace.second_level, w.second_level);  // whose clusters take long to find
   std::vector<double> pressed;
-  for (int round = 0; round < rounds; ++round)
-    if (!press_once(model, own, later, touches, own_workspace, pressed)) return;
-  w.contact.pressed_at_first = std::move(pressed);
+  int round = 0;
+  while (round < rounds && press_once(model, own, later, touches, own_workspace, pressed)) ++round;
+  std::swap(own_workspace.second_level, w.second_level);
+  if (round == rounds) w.contact.pressed_at_first = std::move(pressed);
 }
 
 }  // namespace supple
