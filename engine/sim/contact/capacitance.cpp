@@ -191,12 +191,19 @@ bool Capacitance::extend(Threads* threads) {
   return std::find(done.begin(), done.end(), 0) == done.end();
 }
 
+Capacitance::Point Capacitance::point_of(const ContactStencil& stencil) const {
+  Point point{.stencil = &stencil};
+  for (int k = 0; k < stencil.free; ++k) point.place[k] = entries_.place(stencil.vertex[k]);
+  return point;
+}
+
 // Returns the entry of A^-1 between two points: the sum of the entries among their vertices, by both points' weights.
-float Capacitance::entry(const ContactStencil& a, const ContactStencil& b) const {
-  if (a.is_vertex() && b.is_vertex()) return entries_.entry(a.vertex[0], b.vertex[0]);
+float Capacitance::entry(const Point& a, const Point& b) const {
+  if (a.stencil->is_vertex() && b.stencil->is_vertex()) return entries_.entry(a.place[0], b.place[0]);
   double sum = 0;
-  for (int i = 0; i < a.free; ++i) {
-    for (int j = 0; j < b.free; ++j) sum += a.weight[i] * b.weight[j] * entries_.entry(a.vertex[i], b.vertex[j]);
+  for (int i = 0; i < a.stencil->free; ++i) {
+    for (int j = 0; j < b.stencil->free; ++j)
+      sum += a.stencil->weight[i] * b.stencil->weight[j] * entries_.entry(a.place[i], b.place[j]);
   }
   return static_cast<float>(sum);
 }
@@ -206,24 +213,34 @@ void Capacitance::fill(std::span<const Eigen::Index> rows, std::span<const Eigen
                        Eigen::Ref<RowMatrix> block) const {
   const auto count = std::ssize(columns);
   std::vector<Vec3> axes;
-  std::vector<float> between(columns.size());
-  for (const Eigen::Index column : columns) axes.push_back(directions_[column].axis);
-  const ContactStencil* point = nullptr;
-  Eigen::Index known = 0;  // entries of the point
+  std::vector<Point> points;  // of the columns, each once
+  std::vector<std::size_t> point_of_column;
+  std::vector<float> between(columns.size());  // entries between the row's point and those of the first columns
+  for (const Eigen::Index column : columns) {
+    const StiffDirection& direction = directions_[column];
+    axes.push_back(direction.axis);
+    if (points.empty() || !same(direction.stencil, *points.back().stencil))
+      points.push_back(point_of(direction.stencil));
+    point_of_column.push_back(points.size() - 1);
+  }
+  Point own;
+  Eigen::Index known = 0;  // columns of `between`
   for (Eigen::Index i = 0; i < std::ssize(rows); ++i) {
-    const StiffDirection& own = directions_[rows[i]];
+    const StiffDirection& direction = directions_[rows[i]];
     const Eigen::Index end = std::min(count, shift + i + 1);
-    if (point == nullptr || !same(own.stencil, *point)) known = 0;
-    point = &own.stencil;
+    if (own.stencil == nullptr || !same(direction.stencil, *own.stencil)) {
+      own = point_of(direction.stencil);
+      known = 0;
+    }
     for (; known < end; ++known) {
-      const ContactStencil& other = directions_[columns[known]].stencil;
-      const bool is_next = known == 0 || !same(other, directions_[columns[known - 1]].stencil);
-      between[known] = is_next ? entry(own.stencil, other) : between[known - 1];
+      const std::size_t point = point_of_column[known];
+      const bool is_next = known == 0 || point != point_of_column[known - 1];
+      between[known] = is_next ? entry(own, points[point]) : between[known - 1];
     }
     float* const values = &block(i, 0);
-    const Vec3 axis = own.axis;
+    const Vec3 axis = direction.axis;
     for (Eigen::Index j = 0; j < end; ++j) values[j] = static_cast<float>(axis.dot(axes[j])) * between[j];
-    if (shift + i < count) values[shift + i] += static_cast<float>(1 / own.stiffness);
+    if (shift + i < count) values[shift + i] += static_cast<float>(1 / direction.stiffness);
   }
   if (motions_ != nullptr && has_several_parts()) add_products_of_motions(rows, columns, block);
 }

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <Eigen/LU>
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -95,6 +96,11 @@ class Capacitance {
 
  private:
   using RowMatrix = BlockFactor::RowMatrix;
+  // A point of a body, with where the entries of its free vertices are kept.
+  struct Point {
+    const ContactStencil* stencil = nullptr;
+    std::array<InverseEntries::Place, std::tuple_size_v<decltype(ContactStencil::vertex)>> place = {};
+  };
 
   bool has_several_parts() const { return parts_.count() > 1; }
   void know_motions();
@@ -107,7 +113,8 @@ class Capacitance {
             Eigen::Ref<RowMatrix> block) const;
   void add_products_of_motions(std::span<const Eigen::Index> rows, std::span<const Eigen::Index> columns,
                                Eigen::Ref<RowMatrix> block) const;
-  float entry(const ContactStencil& a, const ContactStencil& b) const;
+  Point point_of(const ContactStencil& stencil) const;
+  float entry(const Point& a, const Point& b) const;
   std::size_t home_of(const StiffDirection& direction, Eigen::Index number);
 
   VertexParts parts_;

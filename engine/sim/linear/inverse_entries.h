@@ -18,27 +18,31 @@ namespace supple {
 
 class InverseEntries {
  public:
+  // Says where the entries of an unknown are kept.
+  struct Place {
+    std::int32_t tree = 0;
+    std::int32_t slot = -1;  // in the tree; -1: not known
+  };
+
   // Ensures that all entries among these unknowns are known. The factor must stay the same until clear(). Allocates
   // for unknowns that are new. threads: null for the calling one alone.
   void learn(const CholeskyFactor& factor, const std::vector<std::int32_t>& unknowns, Threads* threads);
 
+  // Returns the place of an unknown that was learned, which stays until clear().
+  Place place(std::int32_t unknown) const { return place_of_[unknown]; }
   // Returns the entry of A^-1 for two unknowns that were learned in one call.
-  float entry(std::int32_t a, std::int32_t b) const {
-    const Place &of_a = place_of_[a], &of_b = place_of_[b];
-    if (of_a.tree != of_b.tree) return 0;
-    const auto [low, high] = std::minmax(of_a.slot, of_b.slot);
-    return trees_[of_a.tree].products[first_product(high) + low];
+  float entry(Place a, Place b) const {
+    if (a.tree != b.tree) return 0;
+    const auto [low, high] = std::minmax(a.slot, b.slot);
+    return trees_[a.tree].products[first_product(high) + low];
   }
+  float entry(std::int32_t a, std::int32_t b) const { return entry(place(a), place(b)); }
 
   // Returns how many numbers are kept.
   std::int64_t stored_numbers() const { return stored_; }
   void clear() { *this = {}; }
 
  private:
-  struct Place {
-    std::int32_t tree = 0;
-    std::int32_t slot = -1;  // in the tree; -1: not known
-  };
   struct Column {
     std::int32_t strip;            // strip of the column's unknown
     std::int32_t size;             // numbers from the strip's first unknown to the root's last one
