@@ -9,6 +9,7 @@
 
 #include "baselines/reference.h"
 #include "geometry/triangles/surface_thickness.h"
+#include "sim/model/joined_model.h"
 #include "sim/model/motion_error.h"
 #include "support/contact_scene.h"
 
@@ -139,6 +140,36 @@ TEST(ErrorEstimate, OfMotionOfClothIsTheSumOfTwoForecasts) {
   for (const BodyDescription& cloth :
        {test::spring_net(6), test::sheet({0.2, 0.2}, {6, 6}, {test::all_membranes().front(), 0.01})})
     expect_joined(cloth, 2, [](double ahead, double foretold) { return ahead + foretold; });
+}
+
+// A bar and a net that move without touching each other, and whose steps are made together.
+TEST(ErrorEstimate, OfMotionIsMadeForEachPartByItsOwnRule) {
+  BodyDescription net = test::spring_net(6), held = test::bar(NeoHookean{2e4, 8e4}, test::Held::nothing);
+  net.mesh.rest.rowwise() += Eigen::RowVector3d(3, 0, 0);
+  const Model solid = build_model(held), cloth = build_model(net);
+  const Model both = join({&solid, &cloth});
+  StepInputs inputs = test::still_inputs(both);
+  inputs.solver.newton = false;
+  State state = rest_state(both);
+  for (int v = 0; v < both.vertices; ++v) state.v.row(v) = Eigen::RowVector3d(std::sin(5.0 * v), std::cos(3.0 * v), 0);
+  const Positions q = state.x;
+  OpenWorkspace w;
+  const StepReport report = step(both, inputs, state, w);
+  ASSERT_EQ(report.motion_estimates.size(), 2u);
+  motion_ahead(both, inputs, q, w);
+  // The way ahead is in the trial iterate's gradient, and its factor is the same for all parts.
+  double times = 0;
+  for (std::size_t p = 0; p < 2; ++p) {
+    const Part& part = both.parts[p];
+    const double motion = own_motion(both, part, q, w.y, w.current.x), foretold = w.lengths.left(p) / motion;
+    const double way = mass_length(both, part, w.trial.gradient) / motion, estimate = report.motion_estimates[p];
+    ASSERT_GT(foretold, 0);
+    if (part.solid) {
+      times = estimate * estimate / foretold / way;
+    } else {
+      EXPECT_NEAR(estimate, times * way + foretold, 1e-9 * estimate);
+    }
+  }
 }
 
 // What a workspace remembers of the directions of an earlier step is not taken for those of the next.

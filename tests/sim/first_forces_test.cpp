@@ -82,5 +82,35 @@ TEST(FirstForces, AreNotAskedForInTheAirWithoutFrictionAndInLaterSteps) {
   }
 }
 
+// The search for these forces borrows the clusters of the step, which must be as if it had not.
+TEST(FirstForces, DoNotDependOnWhatTheWorkspaceDidBefore) {
+  const Collider ground{"ground", shape_of(HalfSpace{Vec3::UnitY(), 0}), 0, 0.5};
+  for (const int levels : {1, 2}) {
+    const auto scene_of = [&](int cells) {
+      ContactScene scene(cube(cells, stiff), {ground}, {0, 0.1, 0});
+      scene.state.v.col(0).setConstant(1);
+      scene.inputs.solver.levels = levels;
+      return scene;
+    };
+    const auto two_steps = [](ContactScene& scene, OpenWorkspace& w) {
+      scene.inputs.colliders = &scene.colliders;
+      step(scene.model, scene.inputs, scene.state, w);
+      const std::vector<double> pressed = w.contact.pressed_at_first;
+      step(scene.model, scene.inputs, scene.state, w);
+      return pressed;
+    };
+    ContactScene scene = scene_of(4), again = scene_of(4), other = scene_of(3);
+    OpenWorkspace fresh, used;
+    const std::vector<double> expected = two_steps(scene, fresh);
+    EXPECT_FALSE(expected.empty());
+    two_steps(other, used);
+    EXPECT_EQ(two_steps(again, used), expected) << levels;
+    EXPECT_EQ(again.state.x, scene.state.x) << levels;
+    ContactScene once_more = scene_of(4);
+    EXPECT_EQ(two_steps(once_more, used), expected) << levels;
+    EXPECT_EQ(once_more.state.x, scene.state.x) << levels;
+  }
+}
+
 }  // namespace first_forces_test
 }  // namespace supple

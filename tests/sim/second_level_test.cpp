@@ -1,4 +1,4 @@
-// Tests the second level of search directions: clusters, their matrices, directions with and without contacts, arcs,
+// Tests the second level of search directions: matrices of clusters, directions with and without contacts, arcs,
 // and what it is for: bodies that turn as they should.
 #include <Eigen/Dense>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include "baselines/reference.h"
 #include "geometry/triangles/surface_thickness.h"
 #include "sim/measures/measures.h"
+#include "sim/solver/error_estimate.h"
 #include "sim/solver/first_iterate.h"
 #include "sim/solver/lbfgs.h"
 #include "support/contact_scene.h"
@@ -47,31 +48,6 @@ Positions bent(const Positions& rest, double angle) {
                    .transpose();
   }
   return (x * Eigen::AngleAxisd(0.8, Vec3(1, 2, 3).normalized()).toRotationMatrix().transpose()).eval();
-}
-
-TEST(Clusters, WeightsAddUpToOneAndCentresLieAlongABar) {
-  const Model model = build_model(bar(Corotated{1e4, 3e4}, Held::hard_end, Precision::double_precision, 4));
-  const Clusters clusters = make_clusters(model, {4});
-  ASSERT_EQ(clusters.count(), 4);
-  std::vector<double> along;
-  for (const std::int32_t center : clusters.center) along.push_back(model.rest(center, 0));
-  std::sort(along.begin(), along.end());
-  for (std::size_t c = 1; c < along.size(); ++c) EXPECT_GT(along[c] - along[c - 1], 0.02);
-  for (int v = 0; v < model.vertices; ++v) {
-    double sum = 0;
-    for (const double weight : clusters.weight[v]) {
-      EXPECT_GE(weight, 0);
-      sum += weight;
-    }
-    EXPECT_NEAR(sum, 1, 1e-14);
-  }
-}
-
-TEST(Clusters, ABodyThatIsTurnedHasTheSame) {
-  BodyDescription body = bar(Corotated{1e4, 3e4}, Held::nothing, Precision::double_precision, 3);
-  const Clusters before = make_clusters(build_model(body), {5});
-  body.mesh.rest *= Eigen::AngleAxisd(1, Vec3(3, 1, 2).normalized()).toRotationMatrix().transpose();
-  EXPECT_EQ(make_clusters(build_model(body), {5}).center, before.center);
 }
 
 // The matrix of A is exactly Z^T A Z for a body that has its rest shape, turned or not.
@@ -296,6 +272,21 @@ TEST(MotionError, SeesABodyThatDoesNotTurn) {
       EXPECT_LT(motion, 0.01);
       EXPECT_FALSE(is_unsolved(report));
     }
+  }
+}
+
+// Directions that resist turning hardly move the bar, and would foretell that next to nothing is left.
+TEST(MotionError, OfABodyThatDoesNotTurnCountsTheWayAheadByAQuarter) {
+  const Model model = bar_on_a_hinge();
+  StepInputs inputs = test::still_inputs(model);
+  inputs.solver.levels = 1;
+  State state = rest_state(model);
+  OpenWorkspace w;
+  for (int frame = 0; frame < 3; ++frame) {
+    const Positions q = state.x;
+    const double estimate = step(model, inputs, state, w).motion_estimate, ahead = motion_ahead(model, inputs, q, w);
+    EXPECT_GT(w.lengths.left(0), 0);
+    EXPECT_NEAR(estimate, ahead / 4, 1e-9 * ahead) << frame;
   }
 }
 

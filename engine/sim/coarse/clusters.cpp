@@ -90,8 +90,9 @@ EdgeGraph graph_of(const Model& model, const Part& part, EdgeList edges) {
 }
 
 // Computes the distances from one vertex, along edges, of all vertices that are clearly nearer to it than their limit
-// (Dijkstra 1959) [m]; the others are unreached. limits: the distances from other vertices. A shortest way to a vertex
-// within its limit leads only over such vertices.
+// (Dijkstra 1959) [m]; the others are unreached. limits: each vertex's distance from the nearest of some others, or
+// infinity. A shortest way to a vertex within its limit leads only over such vertices, because limits differ along an
+// edge by no more than its length.
 std::vector<double> distances_from(const EdgeGraph& graph, std::int32_t start, const std::vector<double>& limits) {
   std::vector<double> distance(graph.begin.size() - 1, unreached);
   if (!is_clearly_less(0, limits[start])) return distance;

@@ -1,9 +1,20 @@
-// Makes W^T C^-1 W from the factor of a C with one group (block_factor.h): L^-1 W, and the products of its rows.
+// Solves for several columns with the factor of a C with one group (block_factor.h), and makes W^T C^-1 W from it: L^-1
+// W, and the products of its rows.
 #include <algorithm>
 
 #include "sim/contact/block_factor.h"
 
 namespace supple {
+
+void BlockFactor::solve_columns(RowMatrix& numbers) const {
+  for (const Column& column : columns_) {
+    const Eigen::Index n = column.size();
+    RowMatrix own = numbers(column.members, Eigen::all);
+    column.lower.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(own);
+    column.lower.topLeftCorner(n, n).triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+    numbers(column.members, Eigen::all) = own;
+  }
+}
 
 void BlockFactor::forget_rows() {
   for (Column& column : columns_) column.keep_rows(0);

@@ -96,6 +96,7 @@ void Capacitance::clear() {
   lists_.clear();
   begin_.clear();
   motions_of_ = 0;
+  is_changed_ = true;
 }
 
 void Capacitance::begin_step(const System& system, const std::vector<Part>& parts) {
@@ -121,6 +122,7 @@ bool Capacitance::set(const System& system, const std::vector<StiffDirection>& w
     place.push_back(stays ? static_cast<Eigen::Index>(ordered.size()) : -1);
     if (stays) ordered.push_back(direction);
   }
+  is_changed_ |= place.size() != wanted.size() || std::find(place.begin(), place.end(), -1) != place.end();
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (!taken[i]) ordered.push_back(wanted[i]);
   }
@@ -142,6 +144,7 @@ bool Capacitance::set(const System& system, const std::vector<StiffDirection>& w
 
 // A list that has grown at its end keeps its factor; where lists were merged, all are factored again.
 bool Capacitance::append(const System& system, const std::vector<StiffDirection>& more, Threads* threads) {
+  is_changed_ |= !more.empty();
   bool is_merged = false;
   for (const StiffDirection& direction : more) {
     const std::size_t count = lists_.size();
@@ -213,7 +216,7 @@ void Capacitance::fill(std::span<const Eigen::Index> rows, std::span<const Eigen
                        Eigen::Ref<RowMatrix> block) const {
   const auto count = std::ssize(columns);
   std::vector<Vec3> axes;
-  std::vector<Point> points;  // of the columns, each once
+  std::vector<Point> points;  // of the columns; neighbours of the same point share one
   std::vector<std::size_t> point_of_column;
   std::vector<float> between(columns.size());  // entries between the row's point and those of the first columns
   for (const Eigen::Index column : columns) {

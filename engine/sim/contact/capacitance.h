@@ -9,8 +9,8 @@
 // C is K^-1 + N^T A^-1 N, and W = N^T Z. For several parts this matrix has the blocks of C. It is factored as it
 // stands, whenever Z moves. For a body alone C keeps its factor and its three systems, and the rest is added by (C + W
 // D W^T)^-1 = C^-1 - C^-1 W (1 + D W^T C^-1 W)^-1 D W^T C^-1 (Woodbury), or by (1 + C^-1 W D W^T)^-1 C^-1 where there
-// are fewer directions than columns of W. With the first formula for several parts, a row of 80 cubes takes 3.5 times
-// as long, because all columns of W are coupled there.
+// are fewer directions than three quarters of the columns of W. With the first formula for several parts, a row of 80
+// cubes takes 3.5 times as long, because all columns of W are coupled there.
 #pragma once
 
 #include <Eigen/LU>
@@ -96,7 +96,7 @@ class Capacitance {
 
  private:
   using RowMatrix = BlockFactor::RowMatrix;
-  // A point of a body, with where the entries of its free vertices are kept.
+  // Holds a point of a body and the places of its free vertices among the kept entries.
   struct Point {
     const ContactStencil* stencil = nullptr;
     std::array<InverseEntries::Place, std::tuple_size_v<decltype(ContactStencil::vertex)>> place = {};
@@ -133,10 +133,12 @@ class Capacitance {
   // One part has all columns of W here.
   RowMatrix rows_;                 // W
   std::vector<char> known_;        // by direction: whether its row is known
-  bool are_few_ = false;           // fewer directions than columns
-  std::size_t lists_counted_ = 0;  // lists whose products are in `between_`, where they are not few
-  Eigen::MatrixXd between_;        // W^T C^-1 W, for the matrix C without the motions; of few: 1 + C^-1 W D W^T
-  Eigen::PartialPivLU<Eigen::MatrixXd> both_;  // factor of 1 + D W^T C^-1 W; of few: of 1 + C^-1 W D W^T
+  bool is_changed_ = true;         // whether C, W or D are others than in the last couple_motions()
+  bool are_few_ = false;           // whether the directions are so few that the second formula serves
+  std::size_t lists_counted_ = 0;  // the lists whose products are in between_, unless are_few_
+  // W^T C^-1 W; where are_few_, 1 + C^-1 W D W^T. C is the matrix without the motions.
+  Eigen::MatrixXd between_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> both_;  // the factor of 1 + D W^T C^-1 W, or of 1 + C^-1 W D W^T
 };
 
 }  // namespace supple

@@ -30,7 +30,7 @@ class InverseEntries {
 
   // Returns the place of an unknown that was learned, which stays until clear().
   Place place(std::int32_t unknown) const { return place_of_[unknown]; }
-  // Returns the entry of A^-1 for two unknowns that were learned in one call.
+  // These return the entry of A^-1 for two unknowns that were learned in one call.
   float entry(Place a, Place b) const {
     if (a.tree != b.tree) return 0;
     const auto [low, high] = std::minmax(a.slot, b.slot);

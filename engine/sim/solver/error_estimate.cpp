@@ -146,7 +146,8 @@ double joined_forecasts(const Part& part, double ahead, double foretold) {
   constexpr double least_share = 0.25;
   if (foretold <= 0) return ahead;
   if (!part.solid) return ahead + foretold;
-  return std::max(least_share * ahead, std::sqrt(ahead * foretold));
+  const double mean = std::sqrt(ahead * foretold), least = least_share * ahead;
+  return mean < least ? least : mean;  // a mean that is not a number stays
 }
 
 // Estimates the error of motion of each part of a model.

@@ -53,10 +53,11 @@ double error_at_end(const Model& model, const StepInputs& inputs, OpenWorkspace&
 double motion_ahead(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& workspace);
 
 // Estimates the error of motion of the step by motion_ahead() and by what the lengths of earlier directions foretell
-// (DirectionLengths::left): of solids by their geometric mean, which is at least a quarter of the first, of cloth by
-// their sum. Where the iterations go on gaining as much as before and a material is loose at rest, the way ahead counts
-// as longer, because what is left then is mostly motion that directions hardly show. longer: a factor of the way ahead.
-// Overwrites the trial iterate and the workspace's scratch.
+// (DirectionLengths::left). For a solid the estimate is their geometric mean, or a quarter of the first where that is
+// more; for cloth it is their sum; and where the second is not known, it is the first. Where the iterations go on
+// gaining as much as before and a material is loose at rest, the way ahead counts as longer, because what is left then
+// is mostly motion that directions hardly show. longer: a factor of the way ahead. Overwrites the trial iterate and the
+// workspace's scratch.
 double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& workspace,
                        double longer = 1);
 

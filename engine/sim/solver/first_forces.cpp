@@ -75,7 +75,7 @@ void find_first_forces(const Model& model, const StepInputs& inputs, const State
   later.time = model.time_step;  // not 0, so that this step does not look for first forces itself
   OpenWorkspace own_workspace;
   own_workspace.threads = w.threads;
-  std::swap(own_workspace.second_level, w.second_level);  // whose clusters take long to find
+  std::swap(own_workspace.second_level, w.second_level);  // its clusters take long to find
   std::vector<double> pressed;
   int round = 0;
   while (round < rounds && press_once(model, own, later, touches, own_workspace, pressed)) ++round;
