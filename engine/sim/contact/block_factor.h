@@ -45,8 +45,9 @@ class BlockFactor {
   // Solves C x = b in place for the members' numbers in a vector.
   void solve(Eigen::VectorXf& numbers) const;
 
-  // Solves C X = B in place for the rows of the members, for members of one group.
-  void solve_columns(RowMatrix& numbers) const;
+  // These solve L X = B and L^T X = B in place for the rows of the members, for members of one group.
+  void solve_lower(Eigen::Ref<Eigen::MatrixXd> numbers) const;
+  void solve_upper(Eigen::Ref<Eigen::MatrixXd> numbers) const;
 
   // Computes W^T C^-1 W, for members of one group. rows: W, by number of the member. Returns whether the product is
   // new.

@@ -1,4 +1,4 @@
-// Solves for several columns with the factor of a C with one group (block_factor.h), and makes W^T C^-1 W from it: L^-1
+// Solves in double precision with the factor of a C with one group (block_factor.h), and makes W^T C^-1 W from it: L^-1
 // W, and the products of its rows.
 #include <algorithm>
 
@@ -6,14 +6,30 @@
 
 namespace supple {
 
-void BlockFactor::solve_columns(RowMatrix& numbers) const {
-  for (const Column& column : columns_) {
-    const Eigen::Index n = column.size();
-    RowMatrix own = numbers(column.members, Eigen::all);
-    column.lower.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(own);
-    column.lower.topLeftCorner(n, n).triangularView<Eigen::Lower>().transpose().solveInPlace(own);
-    numbers(column.members, Eigen::all) = own;
+namespace {
+
+// Solves in place for some rows with the lower triangle of a matrix, or with its transpose.
+void solve_rows(const BlockFactor::RowMatrix& lower, bool is_transposed, const BlockFactor::Members& rows,
+                Eigen::Ref<Eigen::MatrixXd> numbers) {
+  const auto n = std::ssize(rows);
+  const Eigen::MatrixXd triangle = lower.topLeftCorner(n, n).cast<double>();
+  Eigen::MatrixXd own = numbers(rows, Eigen::all);
+  if (is_transposed) {
+    triangle.triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+  } else {
+    triangle.triangularView<Eigen::Lower>().solveInPlace(own);
   }
+  numbers(rows, Eigen::all) = own;
+}
+
+}  // namespace
+
+void BlockFactor::solve_lower(Eigen::Ref<Eigen::MatrixXd> numbers) const {
+  for (const Column& column : columns_) solve_rows(column.lower, false, column.members, numbers);
+}
+
+void BlockFactor::solve_upper(Eigen::Ref<Eigen::MatrixXd> numbers) const {
+  for (const Column& column : columns_) solve_rows(column.lower, true, column.members, numbers);
 }
 
 void BlockFactor::forget_rows() {

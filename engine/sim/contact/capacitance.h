@@ -8,9 +8,9 @@
 // The second level of directions puts B^-1 = A^-1 + Z D Z^T in the place of A^-1. The matrix is then C + W D W^T, where
 // C is K^-1 + N^T A^-1 N, and W = N^T Z. For several parts this matrix has the blocks of C. It is factored as it
 // stands, whenever Z moves. For a body alone C keeps its factor and its three systems, and the rest is added by (C + W
-// D W^T)^-1 = C^-1 - C^-1 W (1 + D W^T C^-1 W)^-1 D W^T C^-1 (Woodbury), or by (1 + C^-1 W D W^T)^-1 C^-1 where there
-// are fewer directions than three quarters of the columns of W. With the first formula for several parts, a row of 80
-// cubes takes 3.5 times as long, because all columns of W are coupled there.
+// D W^T)^-1 = C^-1 - C^-1 W (1 + D W^T C^-1 W)^-1 D W^T C^-1 (Woodbury), or by L^-T (1 + V D V^T)^-1 L^-1 with C = L
+// L^T and V = L^-1 W, where there are fewer directions than three quarters of the columns of W. With the first formula
+// for several parts, a row of 80 cubes takes 3.5 times as long, because all columns of W are coupled there.
 #pragma once
 
 #include <Eigen/LU>
@@ -107,7 +107,7 @@ class Capacitance {
   bool extend(Threads* threads);
   void couple_motions();
   void couple_few();
-  void solve_without_motions(Eigen::VectorXf& answer) const;
+  void solve_few(Eigen::VectorXf& answer) const;
   void keep_rows(const std::vector<Eigen::Index>& place);
   void fill(std::span<const Eigen::Index> rows, std::span<const Eigen::Index> columns, Eigen::Index shift,
             Eigen::Ref<RowMatrix> block) const;
@@ -136,9 +136,9 @@ class Capacitance {
   bool is_changed_ = true;         // whether C, W or D are others than in the last couple_motions()
   bool are_few_ = false;           // whether the directions are so few that the second formula serves
   std::size_t lists_counted_ = 0;  // the lists whose products are in between_, unless are_few_
-  // W^T C^-1 W; where are_few_, 1 + C^-1 W D W^T. C is the matrix without the motions.
+  // W^T C^-1 W; where are_few_, 1 + V D V^T. C is the matrix without the motions.
   Eigen::MatrixXd between_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> both_;  // the factor of 1 + D W^T C^-1 W, or of 1 + C^-1 W D W^T
+  Eigen::PartialPivLU<Eigen::MatrixXd> both_;  // the factor of 1 + D W^T C^-1 W, or of 1 + V D V^T
 };
 
 }  // namespace supple

@@ -105,33 +105,37 @@ void Capacitance::couple_motions() {
   both_.compute(Eigen::MatrixXd::Identity(r, r) + motions_->difference(0) * between_);
 }
 
-// Makes the factor of 1 + C^-1 W D W^T. For n directions this takes about n r^2 + n^2 r + 4/3 n^3 multiplications; the
-// other form takes half of the first two, and 4/3 r^3.
+// Makes the factor of 1 + V D V^T with V = L^-1 W. D reaches far beyond C^-1 where a body turns, so this is in double
+// precision. For n directions it takes about n r^2 + n^2 r + n^3 / 3 multiplications; the other form takes half of the
+// first two, and 4/3 r^3.
 void Capacitance::couple_few() {
-  const Eigen::MatrixXd rows = rows_.cast<double>();
-  between_.noalias() = rows * motions_->difference(0) * rows.transpose();
-  RowMatrix columns = between_.cast<float>();
-  for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].solve_columns(columns);
-  between_ = columns.cast<double>();
+  Eigen::MatrixXd v = rows_.cast<double>();
+  for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].solve_lower(v);
+  between_.noalias() = v * motions_->difference(0) * v.transpose();
   between_.diagonal().array() += 1;
   both_.compute(between_);
 }
 
-void Capacitance::solve_without_motions(Eigen::VectorXf& answer) const {
-  for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].solve(answer);
+void Capacitance::solve_few(Eigen::VectorXf& answer) const {
+  Eigen::VectorXd numbers = answer.cast<double>();
+  for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].solve_lower(numbers);
+  numbers = both_.solve(numbers).eval();
+  for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].solve_upper(numbers);
+  answer = numbers.cast<float>();
 }
 
 void Capacitance::solve(Eigen::VectorXf& answer) const {
-  solve_without_motions(answer);
-  if (motions_ == nullptr || has_several_parts()) return;
-  if (are_few_) {
-    answer = both_.solve(answer.cast<double>()).cast<float>();
-    return;
-  }
+  const bool has_motions = motions_ != nullptr && !has_several_parts();
+  if (has_motions && are_few_) return solve_few(answer);
+  const auto solve_without = [this](Eigen::VectorXf& numbers) {
+    for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].solve(numbers);
+  };
+  solve_without(answer);
+  if (!has_motions) return;
   const Eigen::VectorXd seen = (rows_.transpose() * answer).cast<double>();
   const Eigen::VectorXd product = motions_->difference(0) * seen;
   Eigen::VectorXf back = rows_ * both_.solve(product).cast<float>();
-  solve_without_motions(back);
+  solve_without(back);
   answer -= back;
 }
 
