@@ -109,7 +109,7 @@ void Capacitance::couple_motions() {
 // precision. For n directions it takes about n r^2 + n^2 r + n^3 / 3 multiplications; the other form takes half of the
 // first two, and 4/3 r^3.
 void Capacitance::couple_few() {
-  Eigen::MatrixXd v = rows_.cast<double>();
+  Eigen::MatrixXd v = rows_.topRows(std::ssize(directions_)).cast<double>();
   for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].solve_lower(v);
   between_.noalias() = v * motions_->difference(0) * v.transpose();
   between_.diagonal().array() += 1;
