@@ -88,8 +88,8 @@ struct Film {
   World world;
 };
 
-// The two films differ by round-off, which impacts and friction make larger: of 24 heights, half end within 2e-6 m
-// where the plate only moves, and within 5e-6 m where it also turns.
+// The two films differ by round-off, which impacts and friction make larger: of 24 heights, half stay within 2e-6 m
+// where the plate only moves, and within 5e-6 m where it also turns; the largest differences are 3e-4 m.
 TEST_F(DeformingColliders, ARigidMotionGivesTheFilmOfTheSameKeys) {
   const Vec3 way(0.3, 0.25, 0);
   for (const double turn : {0.0, 40.0}) {  // about y, in a second [degrees]
@@ -116,6 +116,7 @@ TEST_F(DeformingColliders, ARigidMotionGivesTheFilmOfTheSameKeys) {
     }
     std::ranges::nth_element(differences, differences.begin() + 3);
     EXPECT_LT(differences[3], turn > 0 ? 2e-5 : 4e-6) << turn;
+    EXPECT_LT(std::ranges::max(differences), 1e-3) << turn;
   }
 }
 

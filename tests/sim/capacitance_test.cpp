@@ -230,8 +230,8 @@ TEST(Capacitance, IsThatOfTheDenseSystemWhateverComesAndGoes) {
   for (const std::vector<Vec3>& axes : {std::vector<Vec3>(), world_axes, {Vec3::UnitX(), Vec3(0.6, 0.8, 0)}}) {
     expect_dense_whatever_comes_and_goes(Bodies(8, 30), axes);
     expect_dense_whatever_comes_and_goes(Bodies(1, 240), axes);
-    expect_dense_whatever_comes_and_goes(Bodies(1, 240, 50),
-                                         axes);  // at times more directions than motions, at times fewer
+    // With 50 motions, directions are at times more than motions, and at times fewer.
+    expect_dense_whatever_comes_and_goes(Bodies(1, 240, 50), axes);
   }
 }
 
@@ -303,8 +303,8 @@ TEST(Capacitance, OfAStepDoesNotDependOnEarlierSteps) {
   }
 }
 
-// A second solve, or one after directions were set again as they were, has the same bits.
-TEST(Capacitance, OfABodyAloneIsTheSameWhereNothingChanged) {
+// Directions that are set again as they were have the same bits, and others have their own system.
+TEST(Capacitance, OfABodyAloneIsMadeAgainWhereSomethingChanged) {
   const Bodies bodies(1, 240, 50);
   for (const int count : {10, 60}) {
     const Motions motions(bodies, 1);
@@ -318,6 +318,11 @@ TEST(Capacitance, OfABodyAloneIsTheSameWhereNothingChanged) {
     EXPECT_EQ(solved(system), first);
     ASSERT_TRUE(system.append(bodies.system, {}, nullptr));
     EXPECT_EQ(solved(system), first);
+    const Directions others = sorted(random_directions(bodies, count, {}, 9));
+    ASSERT_TRUE(system.set(bodies.system, others, nullptr));
+    expect_dense(bodies, system, &motions);
+    ASSERT_TRUE(system.set(bodies.system, Directions(others.begin(), others.end() - 3), nullptr));
+    expect_dense(bodies, system, &motions);
     const Motions moved(bodies, 2);
     system.add_motions(&moved.added);
     ASSERT_TRUE(system.set(bodies.system, wanted, nullptr));

@@ -144,10 +144,12 @@ TEST(ErrorEstimate, OfMotionOfClothIsTheSumOfTwoForecasts) {
 
 // A bar and a net that move without touching each other, and whose steps are made together.
 TEST(ErrorEstimate, OfMotionIsMadeForEachPartByItsOwnRule) {
-  BodyDescription net = test::spring_net(6), held = test::bar(NeoHookean{2e4, 8e4}, test::Held::nothing);
+  BodyDescription net = test::spring_net(6), bar = test::bar(NeoHookean{2e4, 8e4}, test::Held::nothing);
   net.mesh.rest.rowwise() += Eigen::RowVector3d(3, 0, 0);
-  const Model solid = build_model(held), cloth = build_model(net);
+  const Model solid = build_model(bar), cloth = build_model(net);
   const Model both = join({&solid, &cloth});
+  ASSERT_TRUE(both.parts[0].solid);
+  ASSERT_FALSE(both.parts[1].solid);
   StepInputs inputs = test::still_inputs(both);
   inputs.solver.newton = false;
   State state = rest_state(both);

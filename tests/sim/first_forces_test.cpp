@@ -82,7 +82,8 @@ TEST(FirstForces, AreNotAskedForInTheAirWithoutFrictionAndInLaterSteps) {
   }
 }
 
-// The search for these forces borrows the clusters of the step, which must be as if it had not.
+// The search for these forces borrows the second level of the step's workspace. What either did before, for this body
+// or another one, changes no bit.
 TEST(FirstForces, DoNotDependOnWhatTheWorkspaceDidBefore) {
   const Collider ground{"ground", shape_of(HalfSpace{Vec3::UnitY(), 0}), 0, 0.5};
   for (const int levels : {1, 2}) {

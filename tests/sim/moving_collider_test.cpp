@@ -45,8 +45,9 @@ TEST(MovingCollider, TheSameImpactLooksTheSameFromBothFramesOfReference) {
   }
 }
 
-// A step gives the same in the frame of reference in which the collider rests, up to round-off, which the iterations
-// make thirty times larger in one step of ten.
+// A step gives the same in the frame of reference in which the collider rests, up to round-off: the median difference
+// is 7e-7 of the body's size. In one impact of ten it is thirty times as large, and in one of these it is 0.05, where
+// the iterations take another way.
 TEST(MovingCollider, AStepOfAnImpactIsThatOfTheOtherFrameOfReference) {
   const auto stepped = [](const Vec3& velocity, bool box_flies) {
     test::ContactScene scene(test::cube(3, NeoHookean{3e4, 6e4}),
@@ -67,6 +68,7 @@ TEST(MovingCollider, AStepOfAnImpactIsThatOfTheOtherFrameOfReference) {
   }
   std::ranges::nth_element(differences, differences.begin() + 30);
   EXPECT_LT(differences[30], 1e-6 * 0.35);
+  EXPECT_LT(std::ranges::max(differences), 0.1 * 0.35);
 }
 
 // The collider rests on the cube, and sets off at once. The vertices that touch it start the step inside.

@@ -286,6 +286,7 @@ TEST(MotionError, OfABodyThatDoesNotTurnCountsTheWayAheadByAQuarter) {
     const Positions q = state.x;
     const double estimate = step(model, inputs, state, w).motion_estimate, ahead = motion_ahead(model, inputs, q, w);
     EXPECT_GT(w.lengths.left(0), 0);
+    EXPECT_GT(ahead, 0.1);
     EXPECT_NEAR(estimate, ahead / 4, 1e-9 * ahead) << frame;
   }
 }

@@ -45,13 +45,13 @@ class BlockFactor {
   // Solves C x = b in place for the members' numbers in a vector.
   void solve(Eigen::VectorXf& numbers) const;
 
-  // These solve L X = B and L^T X = B in place for the rows of the members, for members of one group.
+  // These solve L X = B and L^T X = B in place, in double precision. The rows of X have the members' numbers; all
+  // members must be of one group.
   void solve_lower(Eigen::Ref<Eigen::MatrixXd> numbers) const;
   void solve_upper(Eigen::Ref<Eigen::MatrixXd> numbers) const;
 
-  // Computes W^T C^-1 W, for members of one group. rows: W, by number of the member. Returns whether the product is
-  // new.
-  bool multiply_rows(const RowMatrix& rows);
+  // Computes W^T C^-1 W, for members of one group. rows: W, by number of the member.
+  void multiply_rows(const RowMatrix& rows);
   void forget_rows();
   // Adds the lower triangle of that product.
   void add_product(Eigen::MatrixXd& sum) const;
@@ -95,7 +95,7 @@ class BlockFactor {
   bool factor_diagonal(int group, const Fill& fill);
   void factor_block(int group, Block& block, const Fill& fill) const;
   static void see_rows(const RowMatrix& rows, Column& column);
-  static bool sum_product(Column& column);
+  static void sum_product(Column& column);
 
   std::vector<Column> columns_;               // in the order of elimination, and then those that were appended
   std::size_t ordered_ = 0;                   // how many of them were not appended

@@ -5,7 +5,6 @@
 #include "sim/contact/block_factor.h"
 
 namespace supple {
-
 namespace {
 
 // Solves in place for some rows with the lower triangle of a matrix, or with its transpose.
@@ -36,13 +35,11 @@ void BlockFactor::forget_rows() {
   for (Column& column : columns_) column.keep_rows(0);
 }
 
-bool BlockFactor::multiply_rows(const RowMatrix& rows) {
-  bool is_new = false;
+void BlockFactor::multiply_rows(const RowMatrix& rows) {
   for (Column& column : columns_) {
     see_rows(rows, column);
-    is_new |= sum_product(column);
+    sum_product(column);
   }
-  return is_new;
 }
 
 void BlockFactor::see_rows(const RowMatrix& rows, Column& column) {
@@ -56,16 +53,15 @@ void BlockFactor::see_rows(const RowMatrix& rows, Column& column) {
   column.lower.block(first, first, more, more).triangularView<Eigen::Lower>().solveInPlace(added);
 }
 
-bool BlockFactor::sum_product(Column& column) {
+void BlockFactor::sum_product(Column& column) {
   const Eigen::Index n = column.size(), r = column.seen.cols();
-  if (column.summed == n && column.has_product) return false;
+  if (column.summed == n && column.has_product) return;
   if (column.summed == 0) column.product.setZero(r, r);
   const Eigen::Index more = n - column.summed;
   if (more > 0 && r > 0)
     column.product.selfadjointView<Eigen::Lower>().rankUpdate(column.seen.middleRows(column.summed, more).transpose());
   column.summed = n;
   column.has_product = true;
-  return true;
 }
 
 void BlockFactor::add_product(Eigen::MatrixXd& sum) const {

@@ -3,7 +3,7 @@
 // alone, which are kept from step to step as long as A stays. Directions at right angles do not feel each other,
 // because A is the same for x, y and z: on flat ground, normals and both tangents are three systems. Nor do directions
 // feel each other that act on no common part of a model. So a system is sparse by blocks (block_factor.h), and dense
-// for a body alone. It is in single precision.
+// for a body alone. C and its factor are in single precision.
 //
 // The second level of directions puts B^-1 = A^-1 + Z D Z^T in the place of A^-1. The matrix is then C + W D W^T, where
 // C is K^-1 + N^T A^-1 N, and W = N^T Z. For several parts this matrix has the blocks of C. It is factored as it
@@ -131,11 +131,10 @@ class Capacitance {
   std::vector<std::size_t> begin_;  // by direction: where its numbers begin in the next two, and the end
   std::vector<float> row_, row_times_;
   // One part has all columns of W here.
-  RowMatrix rows_;                 // W
-  std::vector<char> known_;        // by direction: whether its row is known
-  bool is_changed_ = true;         // whether C, W or D are others than in the last couple_motions()
-  bool are_few_ = false;           // whether the directions are so few that the second formula serves
-  std::size_t lists_counted_ = 0;  // the lists whose products are in between_, unless are_few_
+  RowMatrix rows_;           // W
+  std::vector<char> known_;  // by direction: whether its row is known
+  bool is_changed_ = true;   // whether C, W or D are others than in the last couple_motions()
+  bool are_few_ = false;     // whether the directions are so few that the second formula serves
   // W^T C^-1 W; where are_few_, 1 + V D V^T. C is the matrix without the motions.
   Eigen::MatrixXd between_;
   Eigen::PartialPivLU<Eigen::MatrixXd> both_;  // the factor of 1 + D W^T C^-1 W, or of 1 + V D V^T

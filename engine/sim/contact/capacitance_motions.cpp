@@ -27,7 +27,6 @@ void Capacitance::know_motions() {
   if (!has_several_parts()) {
     if (before != motions_of_) {
       known_.clear();
-      lists_counted_ = 0;
       for (BlockFactor& factor : factors_) factor.forget_rows();
     }
     const std::size_t count = directions_.size();
@@ -89,25 +88,22 @@ void Capacitance::add_products_of_motions(std::span<const Eigen::Index> rows, st
 
 // Prepares solves with motions for a body alone.
 void Capacitance::couple_motions() {
-  if (motions_ == nullptr || has_several_parts()) return;
+  if (motions_ == nullptr || has_several_parts() || !std::exchange(is_changed_, false)) return;
   const int r = motions_->first_column.back();
-  const bool is_changed = std::exchange(is_changed_, false),
-             were_few = std::exchange(are_few_, 4 * std::ssize(directions_) < 3 * r);
-  if (are_few_ && (is_changed || !were_few)) couple_few();
-  if (are_few_) return;
-  bool is_new = lists_counted_ != lists_.size() || were_few;
-  for (std::size_t i = 0; i < lists_.size(); ++i) is_new |= factors_[i].multiply_rows(rows_);
-  if (!is_new) return;
-  lists_counted_ = lists_.size();
+  are_few_ = 4 * std::ssize(directions_) < 3 * r;
+  if (are_few_) return couple_few();
   between_.setZero(r, r);
-  for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].add_product(between_);
+  for (std::size_t i = 0; i < lists_.size(); ++i) {
+    factors_[i].multiply_rows(rows_);
+    factors_[i].add_product(between_);
+  }
   between_.triangularView<Eigen::StrictlyUpper>() = between_.transpose();
   both_.compute(Eigen::MatrixXd::Identity(r, r) + motions_->difference(0) * between_);
 }
 
-// Makes the factor of 1 + V D V^T with V = L^-1 W. D reaches far beyond C^-1 where a body turns, so this is in double
-// precision. For n directions it takes about n r^2 + n^2 r + n^3 / 3 multiplications; the other form takes half of the
-// first two, and 4/3 r^3.
+// Makes the factor of 1 + V D V^T with V = L^-1 W. Where a body turns, W D W^T is far larger than C, so this is in
+// double precision. For n directions in one list it takes about n r^2 + 3/2 n^2 r + n^3 / 3 multiplications; the other
+// form takes (n r^2 + n^2 r) / 2 + 4/3 r^3.
 void Capacitance::couple_few() {
   Eigen::MatrixXd v = rows_.topRows(std::ssize(directions_)).cast<double>();
   for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].solve_lower(v);

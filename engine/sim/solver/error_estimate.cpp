@@ -139,8 +139,8 @@ const Positions& longest_way(const Model& model, OpenWorkspace& w) {
 
 // Joins two forecasts of how far a part still has to go, of which the second may be missing (0). Each is off by a
 // factor of its own, so that their geometric mean is nearer than either. Directions that resist turning show nothing of
-// a turn, and their lengths foretell none, so that the way ahead counts by a quarter at least. Cloth bends so easily
-// that each forecast sees motions that the other does not, and they add up
+// a turn, and their lengths foretell none; so the way ahead, to which the second level adds the turn, counts by a
+// quarter at least. Cloth bends so easily that each forecast sees motions that the other does not, and they add up
 // (docs/lab/2026-11-29-estimates-for-cloth.md).
 double joined_forecasts(const Part& part, double ahead, double foretold) {
   constexpr double least_share = 0.25;
