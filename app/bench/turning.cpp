@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +13,7 @@
 
 #include "app/bench/sections.h"
 #include "app/bench/turning_films.h"
+#include "base/stretches.h"
 #include "scene/definition/rotation.h"
 
 namespace supple {
@@ -43,17 +43,13 @@ std::string plane(const Vec3& normal) {
                      friction);
 }
 
-// Returns the rotation that comes nearest to what took the body from rest to x: the polar factor of sum m x X^T about
-// the centres of mass.
+// Returns the rotation that takes the body nearest from rest to x, by masses.
 Mat3 rotation_of(const Model& model, const Positions& x) {
   const Vec3 center = mass_mean(model, x), rest_center = mass_mean(model, model.rest);
   Mat3 sum = Mat3::Zero();
   for (int v = 0; v < model.vertices; ++v)
     sum += model.mass[std::size_t(v)] * (x.row(v).transpose() - center) * (model.rest.row(v) - rest_center.transpose());
-  const Eigen::JacobiSVD<Mat3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Mat3 turn = svd.matrixU() * svd.matrixV().transpose();
-  const Vec3 signs(1, 1, turn.determinant() < 0 ? -1 : 1);
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  return nearest_rotation(sum);
 }
 
 // Returns the angle by which a rotation turns about the z axis, clockwise as a ball that rolls along x does [degrees].

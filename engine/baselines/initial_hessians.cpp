@@ -1,21 +1,15 @@
 #include "baselines/initial_hessians.h"
 
-#include <Eigen/SVD>
+#include <cmath>
+#include <vector>
 
+#include "base/stretches.h"
 #include "sim/model/element_view.h"
 
 namespace supple {
 namespace {
 
 Eigen::Map<Eigen::VectorXd> vector_of(Positions& p) { return {p.data(), p.size()}; }
-
-// Returns the rotation of a polar decomposition, with det R = 1.
-Mat3 rotation_of(const Mat3& f) {
-  const Eigen::JacobiSVD<Mat3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 u = svd.matrixU();
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
-  return u * svd.matrixV().transpose();
-}
 
 // Finds the mean rotation of the elements around each free vertex, weighted by volume.
 void vertex_rotations(const Model& model, const Positions& x, std::vector<Mat3>& rotation) {
@@ -27,7 +21,7 @@ void vertex_rotations(const Model& model, const Positions& x, std::vector<Mat3>&
       if (v < model.free) rotation[v] += weighted;
     }
   });
-  for (Mat3& r : rotation) r = r.isZero(0) ? Mat3(Mat3::Identity()) : rotation_of(r);
+  for (Mat3& r : rotation) r = r.isZero(0) ? Mat3(Mat3::Identity()) : nearest_rotation(r);
 }
 
 // Replaces r_i by R_i r_i, or by R_i^T r_i.
@@ -108,7 +102,7 @@ void HessianInverse::turn_elements(const Model& model, const Positions& x) {
                                  stiffness_numbers(ElementKind::tetrahedron);
     const double* from = &rest_.numbers[at];
     double* to = &turned_.numbers[at];
-    const Mat3 rotation = rotation_of(deformation_gradient(x, element));
+    const Mat3 rotation = nearest_rotation(deformation_gradient(x, element));
     for (int a = 0; a < 3; ++a) {
       for (int b = 0; b <= a; ++b) {
         Mat3 block;

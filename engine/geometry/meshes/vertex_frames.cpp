@@ -2,8 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
+
+#include "base/stretches.h"
 
 namespace supple {
 namespace {
@@ -76,13 +77,9 @@ Mat3 held_within_limits(const Mat3& gradient) {
   if (det > 0 && is_positive(squares - least_stretch * least_stretch * Mat3::Identity()) &&
       is_positive(largest_stretch * largest_stretch * Mat3::Identity() - squares))
     return gradient;
-  const Eigen::JacobiSVD<Mat3> svd(gradient, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 u = svd.matrixU();
-  if (u.determinant() * svd.matrixV().determinant() < 0) u.col(2) *= -1;
-  Vec3 stretch = svd.singularValues();
-  if (det < 0) stretch[2] *= -1;
-  stretch = stretch.cwiseMax(least_stretch).cwiseMin(largest_stretch);
-  return u * stretch.asDiagonal() * svd.matrixV().transpose();
+  const SignedSvd svd(gradient);
+  const Vec3 stretch = svd.stretch.cwiseMax(least_stretch).cwiseMin(largest_stretch);
+  return svd.u * stretch.asDiagonal() * svd.v.transpose();
 }
 
 std::vector<Mat3> frames_at(const VertexFrames& frames, const Positions& positions, Threads* threads) {

@@ -2,12 +2,12 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Geometry>
-#include <Eigen/SVD>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/stretches.h"
 #include "geometry/triangles/numbered_surface.h"
 
 namespace supple {
@@ -95,7 +95,8 @@ CutStretch cut_stretch(const Body& body) {
       edges.col(k) = placed.row(triangle.corner[std::size_t(k) + 1]) - placed.row(triangle.corner[0]);
     Eigen::Matrix2d flat;
     flat << triangle.edges[0], triangle.edges[1], triangle.edges[2], triangle.edges[3];
-    const Eigen::Vector2d both = Eigen::JacobiSVD<Eigen::Matrix<double, 3, 2>>(edges * flat.inverse()).singularValues();
+    const Eigen::Matrix<double, 3, 2> gradient = edges * flat.inverse();
+    const std::array<double, 2> both = flat_stretches(gradient.transpose() * gradient);
     ratios.insert(ratios.end(), {both[0], both[1]});
     far += both[0] > most_stretch || both[1] < least_stretch ? 1 : 0;
   }

@@ -1,11 +1,14 @@
 #include "scene/building/support.h"
 
-#include <Eigen/SVD>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "base/disjoint_sets.h"
+#include "base/stretches.h"
 #include "geometry/shapes/rounded_prism.h"
 #include "scene/definition/rotation.h"
 
@@ -152,7 +155,10 @@ bool is_line(const Frame& frame, const HeldPart& part, Vec3& from, Vec3& to) {
 TriMesh rod_between(const Vec3& from, const Vec3& to, double radius) {
   const double half = 0.5 * (to - from).norm();
   TriMesh mesh = surface_of({{{-half, 0}, {half, 0}}, radius, -radius, radius, radius});
-  const Mat3 turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitX(), to - from).toRotationMatrix();
+  Mat3 turn;  // some turn about the rod's own axis, because the rod is round
+  turn.col(0) = (to - from).normalized();
+  turn.col(1) = turn.col(0).unitOrthogonal();
+  turn.col(2) = turn.col(0).cross(turn.col(1));
   mesh.points = (mesh.points * turn.transpose()).rowwise() + 0.5 * (from + to).transpose();
   return mesh;
 }
@@ -323,8 +329,8 @@ std::vector<Support> supports_of(const Body& body) {
   return supports;
 }
 
-// Follows Kabsch 1976, "A solution for the best rotation to relate two sets of vectors". A point and a line leave
-// rotations open; balls and rods look the same in all of them.
+// Where the held vertices are one point or lie in a line, several rotations are nearest; their supports are balls and
+// rods, which look the same in all of them.
 Eigen::Isometry3d motion_of_held(const Body& body, std::size_t handle, const Positions& now) {
   const std::vector<std::int32_t>& vertices = body.description.handles[handle].vertices;
   const Positions& rest = body.description.mesh.rest;
@@ -336,11 +342,8 @@ Eigen::Isometry3d motion_of_held(const Body& body, std::size_t handle, const Pos
   Mat3 moments = Mat3::Zero();
   for (const std::int32_t v : vertices)
     moments += (now.row(v).transpose() - to) * (rest.row(v).transpose() - from).transpose();
-  const Eigen::JacobiSVD<Mat3> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 u = svd.matrixU();
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-  motion.linear() = u * svd.matrixV().transpose();
+  motion.linear() = nearest_rotation(moments);
   motion.translation() = to - motion.linear() * from;
   return motion;
 }

@@ -1,11 +1,12 @@
 // Implements the part of CoarseSystem that steps use: its matrices in a pose, forces and motions of clusters, and their
 // turns. The parts that do not change with the pose are in coarse_system.cpp.
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
+#include "base/stretches.h"
 #include "sim/coarse/coarse_system.h"
 #include "sim/coarse/cross_matrix.h"
 
@@ -17,13 +18,13 @@ typedef double Four __attribute__((vector_size(4 * sizeof(double))));
 
 Four load_three(const double* from) { return Four{from[0], from[1], from[2], 0}; }
 
-Four cross(const Four& a, const Four& b) {
-  constexpr std::int64_t x = 0, y = 1, z = 2, w = 3;
-  typedef std::int64_t Order __attribute__((vector_size(4 * sizeof(std::int64_t))));
-  const Order next = {y, z, x, w}, last = {z, x, y, w};
-  return __builtin_shuffle(a, next) * __builtin_shuffle(b, last) -
-         __builtin_shuffle(a, last) * __builtin_shuffle(b, next);
-}
+// Returns (y, z, x, w) of (x, y, z, w).
+Four next_of(const Four& a) { return __builtin_shufflevector(a, a, 1, 2, 0, 3); }
+
+// Returns (z, x, y, w) of (x, y, z, w).
+Four last_of(const Four& a) { return __builtin_shufflevector(a, a, 2, 0, 1, 3); }
+
+Four cross(const Four& a, const Four& b) { return next_of(a) * last_of(b) - last_of(a) * next_of(b); }
 
 using MotionBlock = Eigen::Matrix<double, rigid_motions, rigid_motions>;
 
@@ -57,22 +58,6 @@ Mat3 gradient_of(const std::vector<std::int32_t>& vertices, const std::vector<Ve
   return sum;
 }
 
-// Holds the rotation in the polar decomposition of a group's mean deformation gradient, and its extreme stretches.
-struct GroupPose {
-  Mat3 turn;
-  double least, most;  // stretches; the least is below 0 where the group is inverted
-
-  explicit GroupPose(const Mat3& gradient) {
-    const Eigen::JacobiSVD<Mat3> svd(gradient, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Mat3 u = svd.matrixU();
-    const bool inverted = (u * svd.matrixV().transpose()).determinant() < 0;
-    if (inverted) u.col(2) *= -1;
-    turn = u * svd.matrixV().transpose();
-    least = inverted ? -svd.singularValues()[2] : svd.singularValues()[2];
-    most = svd.singularValues()[0];
-  }
-};
-
 }  // namespace
 
 // Adds a group to the matrices of its part, or tells by `is_made` that the part has none.
@@ -84,9 +69,10 @@ void CoarseSystem::add_group(const Group& group, const Positions& x) {
   Block& to_part = blocks_[group.part];
   Vec3 center = Vec3::Zero();
   for (std::size_t i = 0; i < group.vertex.size(); ++i) center += group.share[i] * x.row(group.vertex[i]).transpose();
-  const GroupPose pose(gradient_of(group.vertex, group.gradient, x));
-  to_part.is_made = pose.least > least_stretch && pose.most < most_stretch;
+  const SignedSvd pose(gradient_of(group.vertex, group.gradient, x));
+  to_part.is_made = pose.stretch[2] > least_stretch && pose.stretch[0] < most_stretch;
   if (!to_part.is_made) return;
+  const Mat3 turn = pose.rotation();
   shift_.clear();
   for (const std::int32_t c : group.clusters) shift_.push_back(cross_matrix(center - centers_[c]));
   const int first = clusters_.first[group.part];
@@ -96,9 +82,9 @@ void CoarseSystem::add_group(const Group& group, const Positions& x) {
       const Eigen::Index row = rigid_motions * (group.clusters[c] - first),
                          column = rigid_motions * (group.clusters[d] - first);
       to_part.constant.block<rigid_motions, rigid_motions>(row, column) +=
-          turned(group.constant.block<rigid_motions, rigid_motions>(from, to), pose.turn, shift_[c], shift_[d]);
+          turned(group.constant.block<rigid_motions, rigid_motions>(from, to), turn, shift_[c], shift_[d]);
       to_part.hessian.block<rigid_motions, rigid_motions>(row, column) +=
-          turned(group.hessian.block<rigid_motions, rigid_motions>(from, to), pose.turn, shift_[c], shift_[d]);
+          turned(group.hessian.block<rigid_motions, rigid_motions>(from, to), turn, shift_[c], shift_[d]);
     }
   }
 }

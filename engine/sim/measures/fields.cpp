@@ -1,11 +1,12 @@
 #include "sim/measures/fields.h"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/stretches.h"
 #include "sim/model/element_view.h"
 #include "sim/solver/open_workspace.h"
 
@@ -129,11 +130,7 @@ std::vector<std::array<double, 2>> triangle_stretches(const Positions& rest, con
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
     // The squared stretches are the eigenvalues of (E^T E)(R^T R)^-1, with the present edges E and the edges R at rest.
     const Edges r = edges(rest, t), e = edges(x, t);
-    const Eigen::Matrix2d ratio = (e.transpose() * e) * (r.transpose() * r).inverse();
-    const double half = 0.5 * ratio.trace();
-    const double apart = std::sqrt(std::max(0.0, half * half - ratio.determinant()));
-    stretches[t] = {std::sqrt(half + apart), std::sqrt(std::max(0.0, half - apart))};
-    if (!ratio.allFinite()) stretches[t].fill(std::numeric_limits<double>::quiet_NaN());
+    stretches[t] = flat_stretches((e.transpose() * e) * (r.transpose() * r).inverse());
   }
   return stretches;
 }

@@ -128,8 +128,8 @@ void accept(const Model& model, const StepInputs& inputs, OpenWorkspace& w, Sear
 }
 
 // Tells whether bodies that touch each other went so little of a direction's way that what the rule learned from
-// earlier iterates is about other contacts. Eight creatures that settle in a bowl take 1.1 evaluations an iteration in
-// place of 2.3.
+// earlier iterates is about other contacts. Eight creatures that settled in a bowl took 1.1 evaluations an iteration
+// in place of 2.3.
 bool was_cut_short(const Model& model, const IterationRecord& record) {
   constexpr double most = 0.3;
   return model.parts.size() > 1 && record.alpha < most;

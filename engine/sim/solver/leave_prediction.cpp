@@ -1,8 +1,9 @@
 #include "sim/solver/leave_prediction.h"
 
-#include <Eigen/SVD>
+#include <Eigen/Geometry>
 #include <utility>
 
+#include "base/stretches.h"
 #include "sim/solver/place_iterate.h"
 
 namespace supple {
@@ -25,17 +26,14 @@ const Part* held_part(const Model& model) {
   return held;
 }
 
-// Fits a rigid motion to the held vertices, which belong to one part (Kabsch 1976, "A solution for the best rotation to
-// relate two sets of vectors").
+// Fits a rigid motion to the held vertices, which belong to one part. Vertices in a line leave the turn about it open:
+// a first iterate by a wrong one is only not taken.
 HandleMotion motion_of_handles(const Model& model, const State& state, const OpenWorkspace& w) {
   const int held = model.vertices - model.free;
   const auto before = state.x.bottomRows(held), after = w.current.x.bottomRows(held);
   const Eigen::RowVector3d from = before.colwise().mean(), to = after.colwise().mean();
   const Mat3 moments = (after.rowwise() - to).transpose() * (before.rowwise() - from);
-  const Eigen::JacobiSVD<Mat3> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 u = svd.matrixU();
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
-  return {from.transpose(), to.transpose(), Eigen::AngleAxisd(Mat3(u * svd.matrixV().transpose()))};
+  return {from.transpose(), to.transpose(), Eigen::AngleAxisd(nearest_rotation(moments))};
 }
 
 // Tells whether the turning of some part matters beside its own motion.
