@@ -102,7 +102,7 @@ std::vector<std::string> font_families() {
       names.emplace_back(reinterpret_cast<const char*>(name));
   }
   std::ranges::sort(names);
-  names.erase(std::ranges::unique(names).begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
 }
 

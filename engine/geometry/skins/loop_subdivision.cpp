@@ -195,8 +195,9 @@ void cut_triangles(Skin& skin, EdgedSurface& surface) {
     std::vector<std::array<std::int32_t, 3>> made;  // two skin vertices, and the one between
     for (std::int32_t s = surface.edges[e].begin; s < surface.edges[e].end; ++s) {
       const EdgeSide& side = surface.sides[std::size_t(s)];
-      const auto [a, b] = std::minmax(
-          {skin.rest.triangles(side.triangle, side.place), skin.rest.triangles(side.triangle, (side.place + 1) % 3)});
+      const std::int32_t from = skin.rest.triangles(side.triangle, side.place);
+      const std::int32_t to = skin.rest.triangles(side.triangle, (side.place + 1) % 3);
+      const std::int32_t a = std::min(from, to), b = std::max(from, to);
       auto known = std::ranges::find_if(made, [&](const auto& one) { return one[0] == a && one[1] == b; });
       if (known == made.end()) {
         made.push_back({a, b, static_cast<std::int32_t>(surface.node_of.size())});

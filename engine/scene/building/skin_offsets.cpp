@@ -104,7 +104,7 @@ Positions skin_offsets(const Body& body) {
   const Triangles boundary = surface_of(body);
   std::vector<std::int32_t> outer(boundary.data(), boundary.data() + boundary.size());
   std::ranges::sort(outer);
-  outer.erase(std::ranges::unique(outer).begin(), outer.end());
+  outer.erase(std::unique(outer.begin(), outer.end()), outer.end());
   Positions offsets = Positions::Zero(rest.rows(), 3);
   if (!is_shape) {
     add_surface_offsets(body, outer, boundary, offsets);

@@ -176,8 +176,7 @@ void read_output(const ConfigTable& root, OutputDef& output) {
   output.passes = table->words<PicturePass>(
       {"passes", "", "pictures in numbers beside those of the film, for compositors: passes/NAME/NNNNNN.exr"});
   std::ranges::sort(output.passes);
-  const auto [rest, end] = std::ranges::unique(output.passes);
-  output.passes.erase(rest, end);
+  output.passes.erase(std::unique(output.passes.begin(), output.passes.end()), output.passes.end());
 }
 
 }  // namespace

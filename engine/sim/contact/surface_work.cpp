@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "geometry/triangles/triangle_edges.h"
@@ -62,8 +63,10 @@ Vec3 rest_normal(const Triangles& triangles, Eigen::Index t, const Positions& re
 // Returns the two triangles at an edge, first the one that runs from its lower vertex to the higher one; -1 where there
 // are not just these two. all: sorted_edges() of the triangles.
 std::array<std::int32_t, 2> faces_at(const std::vector<TriangleEdge>& all, const EdgeEnds& edge) {
-  const auto same = std::ranges::equal_range(all, std::pair(edge[0], edge[1]), {},
-                                             [](const TriangleEdge& of) { return std::pair(of.low, of.high); });
+  const auto ends = [](const TriangleEdge& of) { return std::pair(of.low, of.high); };
+  const auto first = std::ranges::lower_bound(all, std::pair(edge[0], edge[1]), {}, ends);
+  const auto last = std::ranges::upper_bound(all, std::pair(edge[0], edge[1]), {}, ends);
+  const std::span<const TriangleEdge> same(first, last);
   if (same.size() != 2 || same[0].upward == same[1].upward) return {-1, -1};
   const bool is_first = same[0].upward;
   return {same[is_first ? 0 : 1].triangle, same[is_first ? 1 : 0].triangle};
