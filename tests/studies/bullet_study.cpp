@@ -171,7 +171,7 @@ void compare_pile(const std::string& assets, Threads& threads) {
   for (const double margin : {0.002, 0.015}) {
     BulletWorld world(Vec3(0, -9.81, 0), margin);
     for (const Body& body : bodies)
-      world.add(body, Lame::from_young(4e4, 0.4), body.description.density, 0.5, Vec3::Zero());
+      world.add(body, Lame::from_young(1e5, 0.4) /* as in the scene */, body.description.density, 0.5, Vec3::Zero());
     const auto add_wall = [&](const Vec3& center, const Vec3& half) {
       world.add_obstacle(std::make_unique<btBoxShape>(vector_of(half)), center, 0.5);
     };
