@@ -329,8 +329,8 @@ std::vector<Support> supports_of(const Body& body) {
   return supports;
 }
 
-// Where the held vertices are one point or lie in a line, several rotations are nearest; their supports are balls and
-// rods, which look the same in all of them.
+// Held vertices that are one point or lie in a line fit several rotations equally well. Their supports are then balls
+// and rods, which look the same in all of these.
 Eigen::Isometry3d motion_of_held(const Body& body, std::size_t handle, const Positions& now) {
   const std::vector<std::int32_t>& vertices = body.description.handles[handle].vertices;
   const Positions& rest = body.description.mesh.rest;

@@ -26,8 +26,8 @@ const Part* held_part(const Model& model) {
   return held;
 }
 
-// Fits a rigid motion to the held vertices, which belong to one part. Vertices in a line leave the turn about it open:
-// a first iterate by a wrong one is only not taken.
+// Fits a rigid motion to the held vertices, which belong to one part. Vertices in a line leave the turn about it open;
+// a first iterate that is made by a wrong turn is not taken.
 HandleMotion motion_of_handles(const Model& model, const State& state, const OpenWorkspace& w) {
   const int held = model.vertices - model.free;
   const auto before = state.x.bottomRows(held), after = w.current.x.bottomRows(held);
