@@ -167,6 +167,21 @@ TEST(JoinedSecondLevel, KeepsTheOtherBodiesWhereOneIsFarFromItsRestShape) {
   EXPECT_LT((joined.difference(0) - bar_alone.difference(0)).norm(), 1e-12 * bar_alone.difference(0).norm());
 }
 
+TEST(JoinedSecondLevel, IsLeftOutOfTheBodyThatADoesNotKeepFromTurning) {
+  std::vector<Model> members;
+  members.push_back(build_model(bar(Corotated{1e4, 3e4}, Held::hard_end, Precision::double_precision, 2)));
+  members.push_back(build_model(cube(3, Corotated{100, 200})));
+  const Bodies bodies(std::move(members));
+  const std::vector<Positions> poses = shaken_poses(bodies);
+  SecondLevel joined, bar_alone, cube_alone;
+  EXPECT_FALSE(cube_alone.begin(bodies.members[1], poses[1]));
+  ASSERT_TRUE(bar_alone.begin(bodies.members[0], poses[0]));
+  ASSERT_TRUE(joined.begin(bodies.joined, bodies.together(poses)));
+  EXPECT_GT(joined.difference(1).rows(), 0);
+  EXPECT_TRUE(joined.difference(1).isZero(0));
+  EXPECT_LT((joined.difference(0) - bar_alone.difference(0)).norm(), 1e-12 * bar_alone.difference(0).norm());
+}
+
 TEST(JoinedTurning, CorrectsWhatItsMembersCorrect) {
   const Bodies bodies = three_bodies();
   std::vector<Positions> rest, motions;

@@ -120,6 +120,65 @@ TEST(SecondLevel, DirectionsAreSymmetricAndLeadDownhill) {
   }
 }
 
+// Returns whether a cube has a second level. L resists its turning with 12 k h^2/(rho s^2) times its inertia, where it
+// is s wide. resistance: this number.
+bool has_second_level(BodyDescription body, double resistance) {
+  const double k = build_model(body).stiffness[0].k, width = bounds_of(body.mesh.rest).extent().x();
+  const double now = 12 * k * body.time_step * body.time_step / (body.density * width * width);
+  const double factor = resistance / now;
+  body.materials = {Corotated{1e4 * factor, 2e4 * factor}};
+  const Model model = build_model(body);
+  SecondLevel second;
+  return second.begin(model, model.rest);
+}
+
+TEST(SecondLevel, IsLeftOutOfBodiesThatADoesNotKeepFromTurning) {
+  BodyDescription body = cube(6, Corotated{1e4, 2e4});
+  EXPECT_FALSE(has_second_level(body, 0.8));
+  EXPECT_TRUE(has_second_level(body, 1.3));
+  body.time_step = 1.0 / 300;
+  EXPECT_FALSE(has_second_level(body, 0.8));
+  EXPECT_TRUE(has_second_level(body, 1.3));
+  body.mesh.rest *= 15;
+  body.density = 100;
+  EXPECT_FALSE(has_second_level(body, 0.8));
+  EXPECT_TRUE(has_second_level(body, 1.3));
+  body.handles = {{"corner", {0}}};
+  EXPECT_FALSE(has_second_level(body, 0.8));
+  EXPECT_TRUE(has_second_level(body, 1.3));
+  body.integrator = Integrator::implicit_midpoint;  // has a quarter of L, and w = 1
+  EXPECT_FALSE(has_second_level(body, 1.3));
+}
+
+// Drag resists turning as it should, so that it is no reason for a second level.
+TEST(SecondLevel, IsNotWantedBecauseOfDamping) {
+  BodyDescription body = cube(6, Corotated{1e4, 2e4});
+  body.damping = 10 * body.time_step;
+  EXPECT_FALSE(has_second_level(body, 0.8));
+  EXPECT_FALSE(has_second_level(body, 4));
+}
+
+TEST(SecondLevel, IsWantedBecauseOfFibres) {
+  BodyDescription body = cube(6, Corotated{1e4, 2e4});
+  body.fibres = {Fibre{0, {1, 0, 0}}};
+  EXPECT_FALSE(has_second_level(body, 0.5));
+  body.fibres[0].kappa = 1e6;
+  EXPECT_TRUE(has_second_level(body, 0.5));
+}
+
+// A slender bar twists about its long axis, where it has next to no inertia: L resists that with twice its inertia
+// here, and turning about the other axes with a sixteenth.
+TEST(SecondLevel, IsWantedByABarThatMayTwist) {
+  BodyDescription body = cube(6, Corotated{1e4, 2e4});
+  body.mesh.rest.col(0) *= 8;
+  const double k = build_model(body).stiffness[0].k, width = 0.2;
+  const double factor = 2 * body.density * width * width / (12 * k * body.time_step * body.time_step);
+  body.materials = {Corotated{1e4 * factor, 2e4 * factor}};
+  const Model model = build_model(body);
+  SecondLevel second;
+  EXPECT_TRUE(second.begin(model, model.rest));
+}
+
 // A rule that is asked to forget drops its pairs, then its second level, and then has nothing left to forget.
 TEST(SecondLevel, IsForgottenAfterThePairs) {
   const Model model = build_model(bar(Corotated{1e4, 3e4}, Held::hard_end, Precision::double_precision, 2));

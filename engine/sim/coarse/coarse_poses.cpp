@@ -98,7 +98,7 @@ bool CoarseSystem::turn_to(const Positions& x) {
     const int size = columns_of(part);
     blocks_[part].constant.setZero(size, size);
     blocks_[part].hessian.setZero(size, size);
-    blocks_[part].is_made = size > 0;
+    blocks_[part].is_made = size > 0 && hampered_[part] != 0;
   }
   for (const Group& group : groups_) {
     if (blocks_[group.part].is_made) add_group(group, x);

@@ -45,6 +45,26 @@ int place_in(const std::vector<std::int32_t>& sorted, std::int32_t value) {
   return static_cast<int>(std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin());
 }
 
+// Sums masses up, for their moment of inertia.
+struct PointMasses {
+  double mass = 0;
+  Vec3 first = Vec3::Zero();
+  Mat3 second = Mat3::Zero();
+
+  void add(double of, const Vec3& at) {
+    mass += of;
+    first += of * at;
+    second += of * at * at.transpose();
+  }
+
+  // Returns the moment of inertia about the axis through the centre of mass that has the least [kg m^2].
+  double least_inertia() const {
+    const Mat3 central = second - first * first.transpose() / mass;
+    const Eigen::SelfAdjointEigenSolver<Mat3> axes(central, Eigen::EigenvaluesOnly);
+    return std::max(axes.eigenvalues()[0] + axes.eigenvalues()[1], 1e-300);
+  }
+};
+
 }  // namespace
 
 void CoarseSystem::make(const Model& model) {
@@ -54,47 +74,59 @@ void CoarseSystem::make(const Model& model) {
   sheets_.set_values(model);
   patches_ = make_patches(model, clusters_);
   find_stretch_bounds(model);
+  find_hampered(model);
   model_ = model.id;
 }
 
 // A cluster that turns by theta moves its vertices so that the sum of m |d|^2 is at least theta^2 times its least
 // moment of inertia.
 void CoarseSystem::find_stretch_bounds(const Model& model) {
-  struct Moments {
-    double mass = 0;
-    Vec3 first = Vec3::Zero();
-    Mat3 second = Mat3::Zero();
+  struct Turning {
+    PointMasses masses;
     double stiffness = 0;
   };
-  std::vector<Moments> moments(clusters_.count());
+  std::vector<Turning> turning(clusters_.count());
   for (const SheetPatch& patch : patches_) {
-    Moments& of = moments[patch.cluster];
+    Turning& of = turning[patch.cluster];
     of.stiffness += patch.stiffness;
-    for (std::size_t i = 0; i < patch.vertex.size(); ++i) {
-      const Vec3 at = model.rest.row(patch.vertex[i]).transpose();
-      of.mass += patch.mass[i];
-      of.first += patch.mass[i] * at;
-      of.second += patch.mass[i] * at * at.transpose();
-    }
+    for (std::size_t i = 0; i < patch.vertex.size(); ++i)
+      of.masses.add(patch.mass[i], model.rest.row(patch.vertex[i]).transpose());
   }
   for (const Group& group : groups_) {
-    Moments& of = moments[group.cluster];
+    Turning& of = turning[group.cluster];
     of.stiffness += group.stiffness * group.volume;
-    for (const std::int32_t v : group.vertex) {
-      const Vec3 at = model.rest.row(v).transpose();
-      of.mass += model.mass[v];
-      of.first += model.mass[v] * at;
-      of.second += model.mass[v] * at * at.transpose();
-    }
+    for (const std::int32_t v : group.vertex) of.masses.add(model.mass[v], model.rest.row(v).transpose());
   }
   stretch_bounds_.assign(std::size_t(parts()), 0.0);
-  for (std::size_t c = 0; c < moments.size(); ++c) {
-    const Moments& of = moments[c];
-    if (of.mass <= 0) continue;
-    const Mat3 second = of.second - of.first * of.first.transpose() / of.mass;
-    const Eigen::SelfAdjointEigenSolver<Mat3> axes(second, Eigen::EigenvaluesOnly);
-    const double inertia = std::max(axes.eigenvalues()[0] + axes.eigenvalues()[1], 1e-300);
-    stretch_bounds_[part_of_[c]] += of.stiffness / (inertia * inertia);
+  for (std::size_t c = 0; c < turning.size(); ++c) {
+    if (turning[c].masses.mass <= 0) continue;
+    const double inertia = turning[c].masses.least_inertia();
+    stretch_bounds_[part_of_[c]] += turning[c].stiffness / (inertia * inertia);
+  }
+}
+
+// A unit turn takes the energy k V of L, and that of kappa V/2 of fibres at most. Inertia has I/(2 h^2) about the axis
+// with the least moment of inertia. Where L has less than inertia and drag, ten iterations turn the body, and a second
+// level would only cost time: it knows less of how a soft body deforms than the pairs of L-BFGS find out
+// (docs/method.md, "Bodies that turn"). From twice as much on, a ball that rolls and a cube on a pin are nearer to the
+// solved ones with it.
+void CoarseSystem::find_hampered(const Model& model) {
+  std::vector<double> stiffness(std::size_t(parts()), 0.0);  // sum of (2 k + kappa) V [J]
+  for (const Group& group : groups_) {
+    const double kappa = model.fibres.empty() ? 0 : model.fibres[std::size_t(group.region)].kappa;
+    stiffness[std::size_t(group.part)] += (2 * group.stiffness + kappa) * group.volume;
+  }
+  const double elastic = model.scheme.energy * model.scheme.theta * model.scheme.theta;
+  const double inverse_h2 = model.scheme.inertia / (model.time_step * model.time_step);
+  hampered_.assign(std::size_t(parts()), 1);
+  for (int p = 0; p < parts(); ++p) {
+    const Part& part = model.parts[p];
+    PointMasses masses;
+    for (const auto& [first, count] : {std::pair(part.first_free, part.free), std::pair(part.first_held, part.held)}) {
+      for (int v = first; v < first + count; ++v) masses.add(model.mass[v], model.rest.row(v).transpose());
+    }
+    if (masses.mass <= 0 || sheets_.is_sheet(p)) continue;
+    hampered_[p] = elastic * stiffness[p] > inverse_h2 * masses.least_inertia() + part.drag * stiffness[p];
   }
 }
 

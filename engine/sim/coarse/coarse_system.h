@@ -31,8 +31,8 @@ class CoarseSystem {
   void make(const Model& model);
 
   // Makes both matrices of each part at x (n x 3 in the model's order): constant() is Z^T A Z, and hessian() has the
-  // elastic stiffness in place of L. A part with a group that is too far from its rest shape has no matrices. Returns
-  // whether any part has them.
+  // elastic stiffness in place of L. A solid that A does not keep from turning has no matrices, nor has a part with a
+  // group that is too far from its rest shape. Returns whether any part has them.
   bool turn_to(const Positions& x);
 
   // Returns the number of parts.
@@ -111,6 +111,7 @@ class CoarseSystem {
   Eigen::MatrixXd point_products(const Model& model, const Group& group) const;
   void set_values(const Model& model, Group& group) const;
   void find_stretch_bounds(const Model& model);
+  void find_hampered(const Model& model);
   void add_group(const Group& group, const Positions& x);
   void sum_forces(const Model& model, const Piece& piece, const Positions& x, const Positions& forces,
                   const Vec3& acceleration);
@@ -127,6 +128,7 @@ class CoarseSystem {
   std::vector<Vec3> centers_;           // p_c [m]
   std::vector<Block> blocks_;           // by part
   std::vector<double> stretch_bounds_;  // by part: most_stretched() over (sum of m |d|^2)^2 [1/(kg^2 m^2 s^2)]
+  std::vector<char> hampered_;          // by part: whether A keeps it from turning, or it is cloth of fabric
   std::vector<Piece> pieces_;           // of the parts that have clusters
   std::vector<double> partial_;         // sums over pieces
   std::vector<Vec3> moved_;             // the result of prolong()

@@ -21,8 +21,9 @@ class SecondLevel {
   void prepare(const Model& model) { system_.make(model); }
   const CoarseSystem& system() const { return system_; }
 
-  // Computes D for a search that starts at x. The block of a part that is far from its rest shape is 0, and that of a
-  // part without clusters is empty. Returns false where all blocks are 0 or empty.
+  // Computes D for a search that starts at x. The block of a solid that A does not keep from turning is 0, and that
+  // of a part that is far from its rest shape; that of a part without clusters is empty. Returns false where all blocks
+  // are 0 or empty.
   bool begin(const Model& model, const Positions& x);
 
   // Moves Z, but not D, to the positions of another iterate: parts turn about the places where they are now. With Z
