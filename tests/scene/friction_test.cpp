@@ -56,6 +56,27 @@ TEST(Friction, IsEasedOnlyWhereItGoesOnSwinging) {
   EXPECT_EQ(after(1, 1, 3).friction_change, 2);
 }
 
+// An edge of a solid that touches others has the number of its first vertex, which may touch something itself.
+TEST(Friction, IsEasedBesideThatOfTheSameEdges) {
+  const auto between_edges = [](std::int32_t last, double friction) {
+    Contact contact = contact_of(5, friction);
+    contact.other = {.collider = -1, .part = 0};
+    contact.stencil = {{5, 6, 20, last}, {0.5, 0.5, -0.3, -0.7}, 4, 4};
+    return contact;
+  };
+  Contact of_vertex = contact_of(5, 3);
+  of_vertex.other = {.collider = -1, .part = 0};
+  std::vector<Contact> before = {of_vertex, between_edges(21, 1), between_edges(22, 2)};
+  before[2].friction_change = 1;
+  before[2].friction_swings = 1;
+  std::vector<Contact> next = {between_edges(22, 1), between_edges(21, 4), of_vertex, between_edges(23, 8)};
+  ease_friction(before, next);
+  EXPECT_EQ(next[0].friction, 1.5);
+  EXPECT_EQ(next[1].friction_change, 3);
+  EXPECT_EQ(next[2].friction_change, 0);
+  EXPECT_EQ(next[3].friction_change, 8);  // it is new
+}
+
 // The ball slides onto the ground and begins to roll; in its second step, the friction of a vertex that arrives swings.
 TEST(Friction, DoesNotSwingUnderABallThatBeginsToRoll) {
   test::PlayedWorld played(

@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t most_axes = 8;  // axes of a list; beyond, all directions count as coupled with it
 constexpr double right_angle = 1e-7;  // cosine below which directions are uncoupled in single precision
 
-// Tells whether two points are the same; most of them are vertices.
+// Tells whether two stencils are the same; most of them are single vertices.
 bool same(const ContactStencil& a, const ContactStencil& b) {
   return a.is_vertex() && b.is_vertex() ? a.vertex[0] == b.vertex[0] : a == b;
 }

@@ -17,7 +17,8 @@
 
 namespace supple {
 
-// Says what a contact's point touches.
+// Says what a contact's point touches: one of two kinds of things. A third kind would have to be told apart wherever
+// is_collider() is asked, and where `part` is read.
 struct OtherSide {
   std::int32_t collider = -1;  // its number; -1: a place of a part's surface, whose vertices are in the stencil
   std::int32_t part = -1;      // the number of that part; -1: a collider
@@ -32,8 +33,9 @@ struct Contact {
   double offset;     // the plane n . u = offset [m]
   double stiffness;  // k_c [N/m]
   double depth;      // the point's depth below the plane when last found or renewed; 0: near, not touching [m]
-  // Names the point in this step: it is the vertex, or the first vertex of an edge that touches another edge. A point
-  // between vertices that touches a collider has a number above those of all vertices.
+  // Names the point in this step: it is the vertex, or the first vertex of an edge that touches another edge, which is
+  // why several contacts may have one number (contact_order.h). A point between vertices that touches a collider has a
+  // number above those of all vertices.
   std::int32_t number = 0;
   // Friction is lagged; it opposes u - origin along the plane (lagged_friction.h).
   double friction = 0;       // coefficient times normal force [N]

@@ -23,6 +23,8 @@ struct ContactStencil {
 
   static ContactStencil at_vertex(std::int32_t v) { return {{v, v, v, v}}; }
   bool is_vertex() const { return count == 1; }
+  // Tells whether it is the difference between places inside two edges.
+  bool is_between_edges() const { return count == 4 && weight[0] * weight[1] * weight[2] * weight[3] > 0; }
   bool is_between_surfaces() const { return std::abs(weight[0] + weight[1] + weight[2] + weight[3]) < 0.5; }
 
   // Returns the sum of vectors by vertex: u of positions, or its motion. x must have rows for all vertices.

@@ -10,10 +10,9 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
+#include <vector>
 
 #include "sim/contact/contact.h"
-#include "sim/contact/contact_order.h"
 
 namespace supple {
 
@@ -39,29 +38,7 @@ inline void begin_friction(double coefficient, double depth_before, double depth
 // row that turn back more than half of the one before (and are not next to nothing), the last one is made only up to
 // where the secant crosses zero (Irons and Tuck 1969, "A version of the Aitken accelerator for computer iteration").
 // One such change may be due to anything. before: the contacts of the iterate; both lists are ordered
-// (contact_order.h).
-inline void ease_friction(const std::vector<Contact>& before, std::vector<Contact>& next) {
-  constexpr double much = 0.5;   // of the change before
-  constexpr double seen = 1e-3;  // of the friction
-  constexpr int enough = 2;
-  constexpr double least = 0.1, most = 0.9;  // of a change that is eased
-  auto at = before.begin();
-  for (Contact& contact : next) {
-    while (at != before.end() && comes_before(*at, contact)) ++at;
-    if (at == before.end() || comes_before(contact, *at)) {
-      contact.friction_change = contact.friction;
-      continue;
-    }
-    const double change = contact.friction - at->friction, last = at->friction_change;
-    const bool swings =
-        change * last < 0 && std::abs(change) > std::max(much * std::abs(last), seen * contact.friction);
-    contact.friction_change = change;
-    contact.friction_swings = swings ? at->friction_swings + 1 : 0;
-    if (contact.friction_swings < enough) continue;
-    contact.friction = at->friction + std::clamp(last / (last - change), least, most) * change;
-    contact.friction_change = 0;
-    contact.friction_swings = 0;
-  }
-}
+// (contact_order.h), and touch no cloth.
+void ease_friction(const std::vector<Contact>& before, std::vector<Contact>& next);
 
 }  // namespace supple

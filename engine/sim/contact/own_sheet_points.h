@@ -21,8 +21,8 @@ class OwnSheetPoints : public TouchedEdges {
   // Adds the contact of a pair, if there is one.
   void find(std::size_t index, std::vector<Contact>& list) const;
 
-  // Returns the share of the way at which a pair that passes through each other is as deep in the layer as it may be;
-  // 1: it never is. least: the share after which impacts do not matter.
+  // Returns the share of the way at which the two of a pair that pass through each other are as deep in the layer as
+  // they may be; 1: they never are. least: the share after which impacts do not matter.
   double share_to_impact(std::size_t index, double least) const;
 
  private:

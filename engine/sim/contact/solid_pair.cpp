@@ -125,10 +125,10 @@ std::optional<MovingSurface::Place> SolidPair::closest(std::int32_t v, const Vec
                  [&](const Takes* takes) { return surface_.moving->closest_at_end(b, most, takes); });
 }
 
-// Returns the place closest to a point among those that do not face the way of the point itself. find(takes): the
-// closest place among some triangles; nearest: gets the distance of the surface, whichever way it faces [m]. Whether
-// the point is inside follows from the place that is closest of all, unless the point is on the surface there, as the
-// lower edges of a box are on the sides of an equal box on which it lies.
+// Returns the place closest to a point among those that do not face the way that the point's own surface does.
+// find(takes): the closest place among some triangles; nearest: gets the distance of the surface, whichever way it
+// faces [m]. Whether the point is inside follows from the place that is closest of all, unless the point is on the
+// surface there, as the lower edges of a box are on the sides of an equal box on which it lies.
 template <class Find>
 std::optional<MovingSurface::Place> SolidPair::closest(const Vec3& p, const Vec3& facing, const Positions& x,
                                                        const Find& find, double* nearest) const {

@@ -1,10 +1,10 @@
 // Finds where the parts of a joined model touch each other in a step: points of one part, which are the vertices of its
-// surface, against the surface of another part, which is a solid or a sheet (sheet_pair.h), or of the same one
-// (own_points.h, own_sheet_points.h); and edges against edges (sheet_edges.h, solid_edges.h). Of two solids, all points
-// of the finer one count, and of the other one those at sharp edges and corners. As for colliders, a point gets the
-// plane of the place that holds it before it touches. That place is a triangle of the other surface with barycentric
-// weights; the contact acts on the point and the triangle's vertices, equal and opposite (contact_stencil.h). Not here:
-// which parts meet (StepInputs::meetings), the energies of the planes (contact.h).
+// surface, against the surface of another part, which is a solid (solid_pair.h) or a sheet (sheet_pair.h), or of the
+// same one (own_points.h, own_sheet_points.h); and edges against edges (sheet_edges.h, solid_edges.h). Of two solids,
+// all points of the finer one count, and of the other one those at sharp edges and corners. As for colliders, a point
+// gets a plane before it touches: that of the place that holds it. This place is a triangle of the other surface with
+// barycentric weights; the contact acts on the point and the triangle's vertices, equal and opposite
+// (contact_stencil.h). Not here: which parts meet (StepInputs::meetings), the energies of the planes (contact.h).
 //
 // For a point that begins a step outside, the way through the step decides: it is held by the triangle through which it
 // came, unless the closest place at the end is on the same side. A point that begins inside is held by the closest

@@ -92,10 +92,9 @@ class TouchedSurface {
 // Tells of each meeting whether only the sharp points (SurfaceWork) of the part `Meeting::points` are looked at. Of two
 // solids whose points touch each other, those of the coarser one follow from those of the finer one, but for edges and
 // corners: if all were looked at, each contact of two surfaces that lie on one another would count twice, and the
-// contacts would nearly depend on each other. Of a sheet
-// and a solid, all points of the sheet are looked at, and all points of the solid where it is the finer one, but
-// otherwise its sharp ones alone. Of two sheets all are looked at: with those of one alone, ten layers that fall on a
-// ball come through each other.
+// contacts would nearly depend on each other. Of a sheet and a solid, all points of the sheet are looked at, and all
+// points of the solid where it is the finer one, but otherwise its sharp ones alone. Of two sheets all are looked at:
+// with those of one alone, ten layers that fall on a ball come through each other.
 std::vector<char> only_sharp_points(const Model& model, const StepInputs& inputs, const SurfaceWork::Parts& work);
 
 // Tells whether the two parts of a meeting are so far apart, on all of their ways to an iterate, that no point of the

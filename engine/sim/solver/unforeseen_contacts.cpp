@@ -9,15 +9,13 @@
 namespace supple {
 namespace {
 
-// Tells whether a contact is that of an edge with one of a solid: two vertices against two.
+// Tells whether a contact is that of an edge with one of a solid.
 bool is_at_ridge(const Model& model, const Contact& contact) {
-  const auto& weight = contact.stencil.weight;
-  return contact.stencil.count == 4 && !contact.other.is_collider() && model.parts[contact.other.part].solid &&
-         weight[0] * weight[1] * weight[2] * weight[3] > 0;
+  return contact.stencil.is_between_edges() && !contact.other.is_collider() && model.parts[contact.other.part].solid;
 }
 
 // Returns the contact of the same point with the same collider or part, or of the same edge with the same edge of a
-// solid; null: there is none. Edges have the number of a vertex, which may have a contact itself.
+// solid; null: there is none. Of cloth, all contacts with one number count as the same.
 const Contact* find_same(const Model& model, const std::vector<Contact>& list, const Contact& contact) {
   const bool at_ridge = is_at_ridge(model, contact);
   auto at = std::lower_bound(list.begin(), list.end(), contact, comes_before);
