@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <set>
+
 #include "support/places.h"
 
 namespace supple {
@@ -17,18 +20,23 @@ std::string cube(const std::string& name, const std::string& keys = "") {
          "\"\nbox = { extent = [0.1, 0.1, 0.1], cells = [1, 1, 1] }\nmaterial = \"jelly\"\n" + keys;
 }
 
+using Options = std::map<std::string, std::string>;
+
 TEST(UnsolvedWords, NameTheOptionsThatTripleTheIterations) {
-  EXPECT_EQ(words_of(cube("a")).remedy, "--set solver.iterations=30 brings them nearer");
-  EXPECT_EQ(words_of("solver.iterations = 4\n" + cube("a")).remedy, "--set solver.iterations=12 brings them nearer");
-  EXPECT_EQ(words_of(cube("a") + cube("b", "solver = { iterations = 20 }\n")).remedy,
-            "--set body.b.solver.iterations=60 brings them nearer");
+  EXPECT_EQ(words_of(cube("a")).options, (Options{{"a", "--set solver.iterations=30"}}));
+  EXPECT_EQ(words_of("solver.iterations = 4\n" + cube("a")).options, (Options{{"a", "--set solver.iterations=12"}}));
+  EXPECT_EQ(words_of(cube("a") + cube("b", "solver = { iterations = 20 }\n")).options,
+            (Options{{"a", "--set solver.iterations=30"}, {"b", "--set body.b.solver.iterations=60"}}));
 }
 
 TEST(UnsolvedWords, NameTheTableOfBodiesThatAreCopies) {
   const std::string copies =
       "[[scatter]]\nbodies = [\"a\", \"b\"]\ncount = 6\nbox = [[0, 0, 0], [1, 1, 1]]\nseed = 3\n";
-  EXPECT_EQ(words_of(cube("a") + cube("b", "solver = { iterations = 7 }\n") + copies).remedy,
-            "--set body.b.solver.iterations=21 brings them nearer");
+  const UnsolvedWords words = words_of(cube("a") + cube("b", "solver = { iterations = 7 }\n") + copies);
+  std::set<std::string> different;
+  for (const auto& [body, option] : words.options) different.insert(option);
+  EXPECT_EQ(words.options.size(), 6u);
+  EXPECT_EQ(different, (std::set<std::string>{"--set solver.iterations=30", "--set body.b.solver.iterations=21"}));
 }
 
 TEST(UnsolvedWords, LeaveOutBodiesOfWhichItIsMeant) {

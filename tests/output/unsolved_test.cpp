@@ -69,6 +69,24 @@ TEST(Unsolved, NamesTheWorstFrameOfEachBody) {
   EXPECT_EQ(json["summary"]["unsolved"][1]["error_estimate"], 0.63);
 }
 
+// A body that has iterations of its own is not helped by the scene's, and the other way round.
+TEST(Unsolved, NamesTheOptionsOfTheBodiesThatNeedThem) {
+  FrameRow row = row_of(0, 0.3, 10, 12);
+  row.bodies.push_back(row.bodies[0]);
+  row.bodies[1].name = "ball";
+  const auto warning = [&] {
+    RowTally tally({row});
+    tally.set_unsolved_words({.options = {{"bar", "--set solver.iterations=30"}, {"ball", "--set own=60"}}});
+    return tally.unsolved_warning();
+  };
+  EXPECT_TRUE(warning().ends_with("; --set solver.iterations=30 --set own=60 bring them nearer")) << warning();
+  row.bodies[1].name = "bar";
+  EXPECT_TRUE(warning().ends_with("; --set solver.iterations=30 brings them nearer")) << warning();
+  row.bodies[1].name = "ball";
+  row.bodies[0].unsolved = false;
+  EXPECT_TRUE(warning().ends_with("; --set own=60 brings them nearer")) << warning();
+}
+
 TEST(Unsolved, SaysNothingOfAFilmThatIsSolved) {
   const std::vector<FrameRow> rows = {row_of(0, 1e-5, 10, 10), row_of(1, 0, 0, 0), row_of(2, 0, 0, 1)};
   EXPECT_EQ(unsolved_of(rows), "");

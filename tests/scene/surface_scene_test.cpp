@@ -83,6 +83,8 @@ TEST_F(SurfaceScene, PiecesApartAreBodiesThatKeepTheirPlaces) {
   EXPECT_NEAR(small.center().x() - large.center().x(), 0.6, 0.01);
   EXPECT_NEAR(large.lower.y(), 1, 0.01);
   EXPECT_NEAR(small.lower.y(), 1.1, 0.01);
+  EXPECT_EQ(scene.bodies[1].label, "toy_2");
+  for (const BodyDef& body : scene_of("surface = \"two.obj\"\n").bodies) EXPECT_EQ(body.label, "") << body.name;
   ASSERT_EQ(bodies[0].notes.size(), 1u);
   EXPECT_EQ(bodies[0].notes[0],
             "the surface has 2 pieces, all of which become bodies of their own (pieces = \"largest\" "

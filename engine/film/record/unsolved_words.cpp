@@ -19,18 +19,18 @@ std::vector<std::string> bodies_meant_unsolved(const SceneDef& scene) {
 UnsolvedWords unsolved_words(const Script& script) {
   const SceneDef& scene = script.scene();
   const auto json = parsed_json<nlohmann::ordered_json>(script.scene_json());
-  std::string options, last;
+  UnsolvedWords words{bodies_meant_unsolved(scene), {}};
+  std::string last;
   int table = -1;
   for (const BodyDef& body : scene.bodies) {
-    if (table >= 0 && body.table == last) continue;  // a piece or a copy
+    if (table < 0 || body.table != last) ++table;  // otherwise it is a piece or a copy
     last = body.table;
-    const nlohmann::ordered_json::json_pointer own(fmt::format("/body/{}/solver/iterations", ++table));
-    if (json.contains(own))
-      options += fmt::format(" --set body.{}.solver.iterations={}", body.table, 3 * body.solver.settings.iterations);
+    const nlohmann::ordered_json::json_pointer own(fmt::format("/body/{}/solver/iterations", table));
+    words.options[body.name] = fmt::format("--set {}solver.iterations={}",
+                                           json.contains(own) ? fmt::format("body.{}.", body.table) : std::string(),
+                                           3 * body.solver.settings.iterations);
   }
-  if (options.empty())
-    options = fmt::format(" --set solver.iterations={}", 3 * scene.bodies.front().solver.settings.iterations);
-  return {bodies_meant_unsolved(scene), options.substr(1) + " brings them nearer"};
+  return words;
 }
 
 }  // namespace supple

@@ -12,8 +12,8 @@ namespace supple {
 // Returns the names of the bodies that say that their unsolved steps are meant.
 std::vector<std::string> bodies_meant_unsolved(const SceneDef& scene);
 
-// Returns the words of a film that is made from the command line: its remedy is the options that triple the iterations
-// of the bodies, in the scene or where bodies have their own.
+// Returns the words of a film that is made from the command line. The options triple the iterations of a body, in the
+// scene or where the body has its own.
 UnsolvedWords unsolved_words(const Script& script);
 
 }  // namespace supple

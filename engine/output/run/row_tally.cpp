@@ -1,6 +1,6 @@
 #include "output/run/row_tally.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
@@ -415,6 +415,18 @@ bool is_further(const UnsolvedStep& one, const UnsolvedStep& other) {
   return std::pair(one.motion_estimate, one.error_estimate) > std::pair(other.motion_estimate, other.error_estimate);
 }
 
+// Names what brings bodies nearer to their solutions. options: by name of a body.
+std::string remedy_for(const std::vector<UnsolvedStep>& steps, const std::map<std::string, std::string>& options) {
+  std::vector<std::string> named;
+  for (const UnsolvedStep& step : steps) {
+    const auto option = options.find(step.body);
+    if (option != options.end() && std::ranges::find(named, option->second) == named.end())
+      named.push_back(option->second);
+  }
+  if (named.empty()) return "more solver.iterations bring them nearer";
+  return fmt::format("{} {} them nearer", fmt::join(named, " "), named.size() == 1 ? "brings" : "bring");
+}
+
 }  // namespace
 
 std::string RowTally::unsolved_warning() const {
@@ -436,7 +448,7 @@ std::string RowTally::unsolved_warning() const {
   for (const UnsolvedStep& step : worst)
     text += fmt::format("{} body '{}' {} (frame {})", &step == &worst.front() ? "" : ";", step.body,
                         distance_words(step), step.frame);
-  return text + "; " + unsolved_words_.remedy;
+  return text + "; " + remedy_for(worst, unsolved_words_.options);
 }
 
 }  // namespace supple

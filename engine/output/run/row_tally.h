@@ -3,6 +3,7 @@
 // sentences of the warnings at a run's end are written in row_tally.cpp.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -88,8 +89,9 @@ struct UnsolvedStep {
 
 // Tells what the warning about unsolved steps leaves out, and how it ends.
 struct UnsolvedWords {
-  std::vector<std::string> meant;  // the names of the bodies that say that their unsolved steps are meant
-  std::string remedy = "more solver.iterations bring them nearer";
+  std::vector<std::string> meant = {};  // the names of the bodies that say that their unsolved steps are meant
+  // By name of a body: the option that gives it more iterations. Where no options are known, the warning names the key.
+  std::map<std::string, std::string> options = {};
 };
 
 class RowTally {

@@ -127,9 +127,11 @@ void read_bodies(Config& config, const ConfigTable& root, SceneDef& scene, Given
   }
   check_scattered(root, scatterings, tables);
   check_meetings(scene, config);
-  // A body that is alone and has no name needs no caption.
+  // The only body of a file that gives it no name needs no caption, nor do its pieces and copies.
   const std::vector<ConfigTable> given = root.tables({"body", "", "what moves"});
-  if (given.size() == 1 && !given.front().has("name") && !given.front().has("label")) scene.bodies.front().label = "";
+  if (given.size() == 1 && !given.front().has("name") && !given.front().has("label")) {
+    for (BodyDef& body : scene.bodies) body.label.clear();
+  }
 }
 
 void read_colliders(const ConfigTable& root, SceneDef& scene, GivenNames& names) {
