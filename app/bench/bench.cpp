@@ -83,13 +83,11 @@ ReportPage page_of(const BenchSetting& setting, std::vector<ReportSection> secti
   page.title = "Speed against error";
   page.lead =
       "Quasi-Newton steps after Liu, Bouaziz and Kavan 2017, and what they are compared with, on the same states in "
-      "one "
-      "program. The paper's numbers stand beside ours. All methods share first iterate, line search, stopping and the "
-      "search for contacts; constant factorisations and patterns are made outside of what is timed. Where bodies "
-      "touch, "
-      "ours, Projective Dynamics and Chebyshev's method correct their directions for contacts, Newton's has them in "
-      "its "
-      "Hessian, and the others learn of them from L-BFGS pairs alone.";
+      "one program. The paper's numbers stand beside ours. All methods share first iterate, line search, stopping and "
+      "the search for contacts; constant factorisations and patterns are made outside of what is timed. Where bodies "
+      "touch, ours, Projective Dynamics, Chebyshev's method and ADMM correct their directions for contacts, Newton's "
+      "and vertex block descent have them in their matrices, and L-BFGS from other matrices learns of them from its "
+      "pairs alone.";
   page.facts = {{"processor", cpu_name()},
                 {"program", program_version()},
                 {"build", build_flags()},

@@ -73,6 +73,50 @@ Dense hessian_at(const Subject& subject, const Positions& x) {
   return dense_of(hessian.matrix());
 }
 
+// Adds figure 9 to the section, and how far the errors of the cube in other poses are from those in the first one.
+// quarter: the turn of pose 2.
+void add_figure9(const BenchSetting& setting, Subject& subject, double stretch, const Mat3& quarter,
+                 ReportSection& section) {
+  SolverComparison comparison(subject, *setting.threads);
+  const std::vector<SolverEntry> both = {{"ours", Method::quasi_newton, 30},
+                                         {"rest pose", Method::lbfgs_from(StartMatrix::rest_hessian), 30}};
+  ReportPlot plot{"figure9", "Error by iteration in both poses"};
+  plot.x_label = "iteration";
+  plot.y_label = "error (equation 12)";
+  plot.y_min = 1e-12;
+  plot.y_max = 2;
+  double spread[2] = {0, 0};
+  std::vector<double> first_curve[2];
+  for (const Mat3& rotation : cube_rotations()) {
+    const BenchState state = released(subject, stretch, rotation);
+    const std::vector<Outcome> outcomes = comparison.run(state, both, 0);
+    const Minimum lowest = comparison.reference(state, outcomes);
+    for (int m = 0; m < 2; ++m) {
+      const std::vector<double> errors = errors_of(outcomes[m], lowest.below_y);
+      if (first_curve[m].empty()) first_curve[m] = errors;
+      for (std::size_t k = 0; k < std::min(errors.size(), first_curve[m].size()) && k <= 10; ++k) {
+        if (std::min(errors[k], first_curve[m][k]) < 1e-12) break;  // round-off
+        spread[m] = std::max(spread[m], std::abs(std::log10(errors[k] / first_curve[m][k])));
+      }
+      const bool shown = rotation.isIdentity() || rotation.isApprox(quarter);
+      if (!shown) continue;
+      PlotSeries curve{fmt::format("{}, pose {}", outcomes[m].label, rotation.isIdentity() ? 1 : 2)};
+      curve.thick = m == 0 && rotation.isIdentity();
+      curve.dashed = !rotation.isIdentity();
+      for (std::size_t k = 0; k < errors.size() && errors[k] > 1e-13; ++k) {
+        curve.x.push_back(static_cast<double>(k));
+        curve.y.push_back(errors[k]);
+      }
+      plot.series.push_back(curve);
+    }
+  }
+  ReportTable turns{"figure9-turns", "24 rotations of the cube"};
+  turns.columns = {"initial Hessian", "largest difference of log10(error), 10 iterations"};
+  turns.rows = {{"ours", number_text(spread[0])}, {"rest pose", number_text(spread[1])}};
+  section.tables.push_back(std::move(turns));
+  section.plots.push_back(std::move(plot));
+}
+
 }  // namespace
 
 ReportSection bench_table2(const BenchSetting& setting) {
@@ -104,45 +148,7 @@ ReportSection bench_table2(const BenchSetting& setting) {
   add("ours", "2, turned", ours, second, 9.94);
   section.tables.push_back(std::move(table));
 
-  SolverComparison comparison(subject, *setting.threads);
-  const std::vector<SolverEntry> both = {{"ours", Method::quasi_newton, 30},
-                                         {"rest pose", Method::lbfgs_from(StartMatrix::rest_hessian), 30}};
-  ReportPlot plot{"figure9", "Error by iteration in both poses"};
-  plot.x_label = "iteration";
-  plot.y_label = "error (equation 12)";
-  plot.y_min = 1e-12;
-  plot.y_max = 2;
-  std::vector<double> reference_curve;
-  double spread[2] = {0, 0};
-  std::vector<double> first_curve[2];
-  for (const Mat3& rotation : cube_rotations()) {
-    const BenchState state = released(subject, stretch, rotation);
-    const std::vector<Outcome> outcomes = comparison.run(state, both, 0);
-    const Minimum lowest = comparison.reference(state, outcomes);
-    for (int m = 0; m < 2; ++m) {
-      const std::vector<double> errors = errors_of(outcomes[m], lowest.below_y);
-      if (first_curve[m].empty()) first_curve[m] = errors;
-      for (std::size_t k = 0; k < std::min(errors.size(), first_curve[m].size()) && k <= 10; ++k) {
-        if (std::min(errors[k], first_curve[m][k]) < 1e-12) break;  // round-off
-        spread[m] = std::max(spread[m], std::abs(std::log10(errors[k] / first_curve[m][k])));
-      }
-      const bool shown = rotation.isIdentity() || rotation.isApprox(quarter);
-      if (!shown) continue;
-      PlotSeries curve{fmt::format("{}, pose {}", outcomes[m].label, rotation.isIdentity() ? 1 : 2)};
-      curve.thick = m == 0 && rotation.isIdentity();
-      curve.dashed = !rotation.isIdentity();
-      for (std::size_t k = 0; k < errors.size() && errors[k] > 1e-13; ++k) {
-        curve.x.push_back(static_cast<double>(k));
-        curve.y.push_back(errors[k]);
-      }
-      plot.series.push_back(curve);
-    }
-  }
-  ReportTable turns{"figure9-turns", "24 rotations of the cube"};
-  turns.columns = {"initial Hessian", "largest difference of log10(error), 10 iterations"};
-  turns.rows = {{"ours", number_text(spread[0])}, {"rest pose", number_text(spread[1])}};
-  section.tables.push_back(std::move(turns));
-  section.plots.push_back(std::move(plot));
+  add_figure9(setting, subject, stretch, quarter, section);
   return section;
 }
 

@@ -149,10 +149,6 @@ StepReport report_of_part(const Model& joined, std::size_t number, const StepRep
   return report;
 }
 
-}  // namespace
-
-namespace {
-
 // Returns the place of a contact between two surfaces, on the one whose vertices have positive weights; those of the
 // other surface have negative ones.
 Vec3 place_of_point(const ContactStencil& stencil, const Positions& x) {
@@ -241,30 +237,35 @@ int Islands::step_without_bounce(const std::vector<std::size_t>& island) {
   std::vector<State> before;
   for (const std::size_t b : island) before.push_back(bodies_[b]->state());
   Selves selves(island.size(), 0);
-  bool begun = false;  // whether those that begin inside themselves are known
-  const auto find_those_that_begin_so = [&] {
+  bool inside_known = false;  // whether it is known which bodies begin inside themselves
+  // Finds these bodies, which get contact with themselves. Returns whether there are any.
+  const auto find_inside = [&] {
     bool any = false;
     for (const std::size_t m : able) {
       selves[m] = begins_in_itself(island[m], before[m].x);
       any |= selves[m] != 0;
     }
-    begun = true;
+    inside_known = true;
     return any;
+  };
+  const std::size_t touched_before = touches_.size();
+  const auto undo_step = [&] {
+    touches_.resize(touched_before);
+    for (std::size_t m = 0; m < island.size(); ++m) bodies_[island[m]]->state_ = before[m];
   };
   const auto is_on_clock = [&](std::size_t b) { return has_time_budget(bodies_[b]->inputs()); };
   if (std::ranges::any_of(island, is_on_clock)) {
-    find_those_that_begin_so();
+    find_inside();
     return step_once(island, selves);
   }
-  if (std::ranges::any_of(able, [&](std::size_t m) { return owns_[island[m]].touched; })) find_those_that_begin_so();
-  const std::size_t touched_before = touches_.size();
+  if (std::ranges::any_of(able, [&](std::size_t m) { return owns_[island[m]].touched; })) find_inside();
   std::vector<double> wasted;  // [ms]
   for (const std::size_t b : island) wasted.push_back(std::exchange(wasted_[b], 0.0));
   for (;;) {
     const int failed = step_once(island, selves);
-    if (failed >= 0 && (begun || !find_those_that_begin_so())) return failed;
     if (failed >= 0) {
-      touches_.resize(touched_before);
+      if (inside_known || !find_inside()) return failed;
+      undo_step();
       continue;
     }
     std::vector<std::size_t> through;
@@ -272,11 +273,10 @@ int Islands::step_without_bounce(const std::vector<std::size_t>& island) {
       if (!selves[m] && comes_through_itself(island[m], before[m].x)) through.push_back(m);
     if (through.empty()) break;
     for (std::size_t m = 0; m < island.size(); ++m) wasted[m] += bodies_[island[m]]->report().step_ms;
-    if (begun || !find_those_that_begin_so()) {
+    if (inside_known || !find_inside()) {
       for (const std::size_t m : through) selves[m] = 1;
     }
-    touches_.resize(touched_before);
-    for (std::size_t m = 0; m < island.size(); ++m) bodies_[island[m]]->state_ = before[m];
+    undo_step();
   }
   for (std::size_t m = 0; m < island.size(); ++m) {
     if (wasted[m] > 0) bodies_[island[m]]->add_time(wasted[m]);

@@ -77,8 +77,8 @@ class MovingBody {
   void prepare_step(int frame, int substep);
   // Makes the prepared step. The state changes only if the step succeeds. With solver.untangle, and where elements are
   // inverted or without volume at its start, the step is made with the as-rigid-as-possible material
-  // (materials/as_rigid_as_possible.h), which unfolds elements that the body's own material would keep folded. A, and
-  // with it every direction, stays the same.
+  // (materials/as_rigid_as_possible.h), which unfolds elements that the body's own material would keep folded. A
+  // stays the same.
   const StepReport& step();
 
   // These two make the prepared step as that of a joined model (islands.h).

@@ -101,6 +101,8 @@ class World {
   // no result.
   void prepare(int substep);
 
+  // The functions from here to body() are for worlds that were started.
+  //
   // Returns how bodies touched each other and themselves at the end of the step that was made last, ordered by body.
   const std::vector<BodyTouch>& touches() const;
   // Returns the step of a joined model (islands.h) that was made last. Where MovingBody::is_in_island() holds for a
@@ -114,6 +116,8 @@ class World {
   std::size_t size() const;  // number of bodies
   // Returns the number of a body. Throws InputError, which lists the bodies, where there is none of this name.
   std::size_t body_named(const std::string& name) const;
+  // Returns a body: its state().x has positions in the order of its model(), which in_input_order() puts into that of
+  // the mesh in bodies().
   MovingBody& body(std::size_t index);
   const MovingBody& body(std::size_t index) const;
 

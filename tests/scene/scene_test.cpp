@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <regex>
+#include <set>
 
 #include "base/text.h"
 #include "scene/building/assemble.h"
@@ -342,6 +344,34 @@ TEST(Documentation, ListsEveryKeyOfScenesAndShapesWithItsDefault) {
     ADD_FAILURE() << "docs/scene-format.md does not hold the " << name << " table as the code has it; it is in "
                   << candidate;
   }
+}
+
+// Returns the words of a cell such as "a list of ground, plain or shadows"; of any other cell, nothing.
+std::vector<std::string> choices_of(const std::string& allowed) {
+  static const std::regex list("(a list of )?([A-Za-z0-9-]+(, [A-Za-z0-9-]+)* or [A-Za-z0-9-]+)"), end(", | or ");
+  std::smatch match;
+  if (!std::regex_match(allowed, match, list)) return {};
+  const std::string words = match[2];
+  return {std::sregex_token_iterator(words.begin(), words.end(), end, -1), std::sregex_token_iterator()};
+}
+
+TEST(Documentation, TheDictionaryOfTheFuzzTargetsHasEveryKeyAndWord) {
+  const std::string dictionary = test::read_file(test::source_folder / "tests" / "fuzz" / "toml.dict");
+  std::vector<DocumentedKey> keys = all_keys();
+  const std::vector<DocumentedKey> of_shapes = shape_keys();
+  keys.insert(keys.end(), of_shapes.begin(), of_shapes.end());
+  std::set<std::string> missing;
+  for (const DocumentedKey& key : keys) {
+    std::string path = key.path;
+    if (path.ends_with("[]")) path.resize(path.size() - 2);
+    const std::string name = path.substr(path.rfind('.') + 1);
+    const std::string line = "\"" + name + " = \"";
+    if (name != "NAME" && dictionary.find(line) == std::string::npos) missing.insert(line);
+    for (const std::string& word : choices_of(key.allowed)) {
+      if (dictionary.find("\"" + word + "\"") == std::string::npos) missing.insert("\"" + word + "\"");
+    }
+  }
+  EXPECT_TRUE(missing.empty()) << "tests/fuzz/toml.dict has no\n" << fmt::format("{}", fmt::join(missing, "\n"));
 }
 
 }  // namespace scene_test

@@ -1,4 +1,5 @@
-// Plays a scene or replay, and prints the number of each frame and the hash of its state.
+// Plays a scene or replay. Prints for each frame its number, the hash of its state and the height of the lowest vertex
+// of the first body.
 //
 //   play_a_scene /opt/supple/share/supple/assets/scenes/rolling.toml /opt/supple/share/supple/assets
 #include <base/error.h>
@@ -20,12 +21,13 @@ int main(int count, char** arguments) {
   try {
     Script script = Script::load(std::filesystem::path(arguments[1]), arguments[2], {});
     std::vector<Body> bodies = assemble(script.scene());
+    Threads threads(2);  // outlives the world
     World world(std::move(script), std::move(bodies));
-    Threads threads(2);
     world.start({make_rule, settings_of}, &threads);  // with all solvers that a scene can name
     for (int frame = 0; frame < world.scene().frames; ++frame) {
       if (!world.play(frame)) throw RunError("a step of frame " + std::to_string(frame) + " failed");
-      std::printf("%d %016" PRIx64 "\n", frame, world.hash());
+      const double lowest = world.body(0).state().x.col(1).minCoeff();
+      std::printf("%d %016" PRIx64 " %.4f\n", frame, world.hash(), lowest);
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

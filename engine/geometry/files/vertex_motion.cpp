@@ -63,8 +63,8 @@ void check_counts(const std::string& name, std::int64_t frames, std::int64_t poi
                    fmt::format("tells of {} frames of {} points: at least one of each is needed", frames, points));
 }
 
-// Reads a PC2 point cache. Behind the frames that the header counts may stand a part of another one, which a run that
-// was stopped leaves.
+// Reads a PC2 point cache. After the frames that the header counts, there may be a part of one more, left by a run that
+// was stopped.
 std::vector<Positions> read_pc2(const std::filesystem::path& path) {
   constexpr std::size_t header = 32, version_at = 12, points_at = 16, frames_at = 28;
   const std::string name = path.string(), bytes = read_file(path, most_motion_bytes);

@@ -22,8 +22,8 @@ constexpr double deep = 0.75;
 
 // Shares of points outside are averaged over at least this length, in edges of the mesh. Without it the skin has the
 // kinks of the elements where it comes close to them, at their vertices: spikes in stripes of colour. With 0.15 they
-// are still seen. On a ball of 100 vertices, one that moves alone takes the skin along by 0.78 of its way; with 0.4 by
-// 0.70, without a least length by all of it.
+// are still seen. On a ball of 100 vertices, a vertex that moves alone takes the skin along by 0.78 of its way; with
+// a least length of 0.4, by 0.70; without one, by all of it.
 constexpr double least_reach = 0.3;
 
 // Tells which vertices of a mesh share an element.

@@ -80,6 +80,10 @@ class Script {
  private:
   struct Parts;
   explicit Script(std::unique_ptr<Parts> parts);
+  // Returns a replay with the name of the scene's file and with the settings in [set]; nothing where that does not give
+  // the same scene.
+  std::optional<std::string> with_the_scene_named(Config replay, const std::string& scene,
+                                                  const std::filesystem::path& file) const;
   std::unique_ptr<Parts> parts_;
 };
 

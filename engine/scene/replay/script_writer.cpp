@@ -73,8 +73,31 @@ std::string comparable(const Config& document) {
 
 }  // namespace
 
-// Where that gives the same scene, the replay names the scene and has the settings in [set]. Otherwise, the scene is
-// written anew: settings may reach a grab, or depend on their order.
+std::optional<std::string> Script::with_the_scene_named(Config replay, const std::string& scene,
+                                                        const std::filesystem::path& file) const {
+  const Parts& parts = *parts_;
+  replay.put("scene", value_of_text(toml_text(scene)), {}, {});
+  for (const std::string& setting : parts.settings) {
+    const std::size_t equals = setting.find('=');
+    const auto value = ConfigValue::parse(setting.substr(equals + 1));
+    replay.put_key("set", setting.substr(0, equals),
+                   value ? *value : value_of_text(toml_text(setting.substr(equals + 1))));
+  }
+  for (const LiveGrab& grab : parts.edits.grabs) replay.append("grab", document_of(grab).root().all_but(""), {});
+  replay.make_files_absolute();
+  std::string text = replay.as_toml() + "\n";
+  // Changes were checked when they were made, take long to be checked, and are no part of the scene at the start.
+  for (const char* key : {"change", "session"}) replay.remove(key);
+  try {
+    const Script read = load(SceneSource(file, replay.as_toml()), parts.scene_file.assets(), {});
+    if (comparable(read.parts_->scene_file) == comparable(parts.scene_file)) return text;
+  } catch (const InputError&) {  // load() throws where a setting reaches a grab
+  }
+  return std::nullopt;
+}
+
+// Where naming the scene, with the settings in [set], does not give the same scene, the scene is written anew: settings
+// may reach a grab, or depend on their order.
 ReplayFiles Script::replay_files(const std::filesystem::path& file, int frames, const PlayedSession& session) const {
   Parts& parts = *parts_;
   const std::filesystem::path& assets = parts.scene_file.assets();
@@ -89,24 +112,8 @@ ReplayFiles Script::replay_files(const std::filesystem::path& file, int frames, 
   for (const TimedChange& change : parts.edits.changes)
     replay.append("change", table_of_change(change, parts.start.fps), {});
   if (!parts.source.text) {
-    Config named = replay.copy();
-    named.put("scene", value_of_text(toml_text(scene_name(scene, file.parent_path(), assets))), {}, {});
-    for (const std::string& setting : parts.settings) {
-      const std::size_t equals = setting.find('=');
-      const auto value = ConfigValue::parse(setting.substr(equals + 1));
-      named.put_key("set", setting.substr(0, equals),
-                    value ? *value : value_of_text(toml_text(setting.substr(equals + 1))));
-    }
-    for (const LiveGrab& grab : parts.edits.grabs) named.append("grab", document_of(grab).root().all_but(""), {});
-    named.make_files_absolute();
-    const std::string text = named.as_toml() + "\n";
-    try {
-      // Changes were checked when they were made, take long to be checked, and are no part of the scene at the start.
-      for (const char* key : {"change", "session"}) named.remove(key);
-      const Script read = load(SceneSource(file, named.as_toml()), assets, {});
-      if (comparable(read.parts_->scene_file) == comparable(parts.scene_file)) return {text, {}, {}};
-    } catch (const InputError&) {  // as it does where a setting reaches a grab
-    }
+    if (const auto text = with_the_scene_named(replay.copy(), scene_name(scene, file.parent_path(), assets), file))
+      return {*text, {}, {}};
   }
   ReplayFiles files;
   files.scene = file.parent_path() / (file.stem().string() + "-scene.toml");

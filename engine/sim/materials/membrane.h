@@ -14,8 +14,8 @@
 // and taut() and natural_width() where density() calls with_tension_field() (tension_field.h). A second woven material
 // needs along(), its own overloads of sheet_density() (elements/triangle.h) and sheet_hessian()
 // (elements/triangle_stiffness.h), and cases in membrane.cpp, coarse/rest_moduli.cpp and film/record/state_file.cpp,
-// which take warp, weft and shear from what is not isotropic. film/pictures/drawn_cloth.cpp tells which cloth shows
-// yarns. Tests and pages need the material in all_membranes() of tests/support/bodies.cpp, in
+// which read warp, weft and shear of every material that is not isotropic. film/pictures/drawn_cloth.cpp tells which
+// cloth shows yarns. Tests and pages need the material in all_membranes() of tests/support/bodies.cpp, in
 // tests/sim/cloth_statics_test.cpp, and in rows of docs/derivatives.md, docs/method.md and docs/scene-format.md. Not
 // here: the triangles (elements/triangle.h), and what resists bending, which no triangle does (model/bending.h).
 #pragma once

@@ -14,7 +14,7 @@ namespace {
 
 // Friction tips a body forward, so that its front presses more than its back. The first round knows only the friction
 // of vertices that arrive, and each further round uses the forces of the round before. With one round, a cube that
-// slides with a coefficient of 0.5 has 86 % of its friction, with four more than 98 %.
+// slides with a coefficient of 0.5 has 86 % of its friction, and with four rounds more than 98 %.
 constexpr int rounds = 4;
 constexpr double touching = 1e-6;  // distance within which a vertex touches, over the body's size
 

@@ -1,5 +1,5 @@
 // Finds how hard a body that touches colliders when a film begins is pressed on them. Friction in a step follows from
-// the normal forces at its start (sim/contact/find_contacts.cpp), which the step before has left in the overlaps; no
+// the normal forces at its start (sim/contact/lagged_friction.h), which the step before has left in the overlaps; no
 // step comes before the first one, so a body that begins at rest on a slope, or sliding on the ground, would be without
 // friction for that step.
 #pragma once
