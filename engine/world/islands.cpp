@@ -248,9 +248,8 @@ int Islands::step_without_bounce(const std::vector<std::size_t>& island) {
     inside_known = true;
     return any;
   };
-  const std::size_t touched_before = touches_.size();
   const auto undo_step = [&] {
-    touches_.resize(touched_before);
+    std::erase_if(touches_, [&](const BodyTouch& touch) { return std::ranges::find(island, touch.a) != island.end(); });
     for (std::size_t m = 0; m < island.size(); ++m) bodies_[island[m]]->state_ = before[m];
   };
   const auto is_on_clock = [&](std::size_t b) { return has_time_budget(bodies_[b]->inputs()); };

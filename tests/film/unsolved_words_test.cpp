@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <set>
 
 #include "support/places.h"
 
@@ -33,10 +32,11 @@ TEST(UnsolvedWords, NameTheTableOfBodiesThatAreCopies) {
   const std::string copies =
       "[[scatter]]\nbodies = [\"a\", \"b\"]\ncount = 6\nbox = [[0, 0, 0], [1, 1, 1]]\nseed = 3\n";
   const UnsolvedWords words = words_of(cube("a") + cube("b", "solver = { iterations = 7 }\n") + copies);
-  std::set<std::string> different;
-  for (const auto& [body, option] : words.options) different.insert(option);
   EXPECT_EQ(words.options.size(), 6u);
-  EXPECT_EQ(different, (std::set<std::string>{"--set solver.iterations=30", "--set body.b.solver.iterations=21"}));
+  for (const auto& [body, option] : words.options) {
+    EXPECT_EQ(option, body.starts_with("a") ? "--set solver.iterations=30" : "--set body.b.solver.iterations=21")
+        << body;
+  }
 }
 
 TEST(UnsolvedWords, LeaveOutBodiesOfWhichItIsMeant) {

@@ -146,15 +146,18 @@ TEST(SecondLevel, IsLeftOutOfBodiesThatADoesNotKeepFromTurning) {
   body.handles = {{"corner", {0}}};
   EXPECT_FALSE(has_second_level(body, 0.8));
   EXPECT_TRUE(has_second_level(body, 1.3));
-  body.integrator = Integrator::implicit_midpoint;  // has a quarter of L, and w = 1
-  EXPECT_FALSE(has_second_level(body, 1.3));
+  body.integrator = Integrator::implicit_midpoint;  // half of L beside twice the inertia
+  EXPECT_FALSE(has_second_level(body, 3.2));
+  EXPECT_TRUE(has_second_level(body, 5.2));
 }
 
 // Drag resists turning as it should, so that it is no reason for a second level.
 TEST(SecondLevel, IsNotWantedBecauseOfDamping) {
   BodyDescription body = cube(6, Corotated{1e4, 2e4});
+  body.damping = body.time_step / 2;  // half of L is drag
+  EXPECT_FALSE(has_second_level(body, 1.7));
+  EXPECT_TRUE(has_second_level(body, 2.5));
   body.damping = 10 * body.time_step;
-  EXPECT_FALSE(has_second_level(body, 0.8));
   EXPECT_FALSE(has_second_level(body, 4));
 }
 

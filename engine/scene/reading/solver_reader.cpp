@@ -117,7 +117,8 @@ SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
   s.levels =
       table.integer({"levels", "",
                      "2: the first matrix of quasi-newton's directions knows that turning parts of the body costs "
-                     "nothing; 1: it resists turning, as the paper's"},
+                     "nothing, unless the body is so soft that it turns all the same; 1: it resists turning, as the "
+                     "paper's"},
                     s.levels, Range::between(1, 2));
   s.matrix = table.word<StartMatrix>(
       {"matrix", "",

@@ -107,9 +107,9 @@ void CoarseSystem::find_stretch_bounds(const Model& model) {
 
 // A unit turn takes the energy k V of L, and that of kappa V/2 of fibres at most. Inertia has I/(2 h^2) about the axis
 // with the least moment of inertia. Where L has less than inertia and drag, ten iterations turn the body, and a second
-// level would only cost time: it knows less of how a soft body deforms than the pairs of L-BFGS find out
-// (docs/method.md, "Bodies that turn"). From twice as much on, a ball that rolls and a cube on a pin are nearer to the
-// solved ones with it.
+// level would mostly cost time: it knows less of how a soft body deforms than the pairs of L-BFGS find out
+// (docs/method.md, "Bodies that turn"). With twice as much and more, balls of stable Neo-Hookean that roll are nearer
+// to the solved ones with it.
 void CoarseSystem::find_hampered(const Model& model) {
   std::vector<double> stiffness(std::size_t(parts()), 0.0);  // sum of (2 k + kappa) V [J]
   for (const Group& group : groups_) {

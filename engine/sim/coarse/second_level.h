@@ -21,8 +21,8 @@ class SecondLevel {
   void prepare(const Model& model) { system_.make(model); }
   const CoarseSystem& system() const { return system_; }
 
-  // Computes D for a search that starts at x. The block of a solid that A does not keep from turning is 0, and that
-  // of a part that is far from its rest shape; that of a part without clusters is empty. Returns false where all blocks
+  // Computes D for a search that starts at x. The block is 0 for a solid that A does not keep from turning and for a
+  // part that is far from its rest shape, and empty for a part without clusters. Returns false where all blocks
   // are 0 or empty.
   bool begin(const Model& model, const Positions& x);
 

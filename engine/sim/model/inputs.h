@@ -86,8 +86,9 @@ struct ChebyshevSettings {
 // Holds the settings of [solver] that step() reads from its inputs; the others are in the Model or in the SearchRule.
 struct SolverSettings {
   int iterations = 10;
-  int history = 5;  // window m of L-BFGS; 0 is plain quasi-Newton
-  int levels = 2;   // 2: directions know how the body turns (coarse/second_level.h); 1: the paper's matrix alone
+  int history = 5;                           // window m of L-BFGS; 0 is plain quasi-Newton
+  int levels = 2;                            // 2: where A keeps the body from turning, directions know how it turns
+                                             // (coarse/second_level.h); 1: the paper's matrix alone
   StartMatrix matrix = StartMatrix::system;  // of quasi-Newton directions: one of quasi_newton_matrices
   LineSearch line_search = LineSearch::armijo;
   double armijo = 0.3;      // gamma

@@ -48,8 +48,9 @@ double error_at_end(const Model& model, const StepInputs& inputs, OpenWorkspace&
 
 // Estimates the error of motion (model/motion_error.h) of a step from q to the current iterate by the length of the
 // direction that begins there, which leads to the minimum of its quadratic model; of several parts, it is the largest.
-// With one level, this model resists turning; the second level then adds what is missing. Returns 0 where the rule does
-// not look beyond its last iterate. Leaves the way in the trial iterate's gradient.
+// With one level, this model resists turning; the second level then adds what is missing, but for solids that A does
+// not keep from turning. Returns 0 where the rule does not look beyond its last iterate. Leaves the way in the trial
+// iterate's gradient.
 double motion_ahead(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& workspace);
 
 // Estimates the error of motion of the step by motion_ahead() and by what the lengths of earlier directions foretell
