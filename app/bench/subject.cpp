@@ -17,11 +17,13 @@
 namespace supple {
 namespace {
 
-// Returns a world of one body of a scene.
+// Returns a world of one body of a scene. It does not touch itself: such a step is one for quasi-Newton directions, and
+// with the rule of another method (solver_instead()) the body would stand still in it.
 World world_of(SceneDef scene, const SubjectChoice& choice) {
   for (Body& body : assemble(scene)) {
     if (body.def.name != choice.body) continue;
     std::erase_if(scene.bodies, [&choice](const BodyDef& def) { return def.name != choice.body; });
+    scene.bodies.front().contact.self = body.def.contact.self = false;
     std::vector<Body> alone;
     alone.push_back(std::move(body));
     return {std::move(scene), std::move(alone)};

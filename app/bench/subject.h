@@ -41,8 +41,8 @@ struct BenchState {
   std::uint64_t hash = 0;
 };
 
-// Holds one body of a scene, ready to run: a world of its own. Throws InputError as loading a scene does, and when
-// there is no such body.
+// Holds one body of a scene, ready to run: a world of its own, in which it touches colliders alone. Throws InputError
+// as loading a scene does, and when there is no such body.
 struct Subject {
   explicit Subject(const SubjectChoice& choice);
 

@@ -16,7 +16,8 @@ struct Model;
 // Solvers{make_rule, settings_of} are all of them (baselines/make_rule.h).
 struct Solvers {
   // Makes a rule for the directions of one body's steps. It is called again when the method or the model's values
-  // change.
+  // change. For steps of bodies that touch each other or themselves it is asked for quasi-Newton directions, and has to
+  // give them: other rules do not know such contacts, and would leave the bodies where they are.
   std::function<std::unique_ptr<SearchRule>(const Method&, const Model&)> rule;
   // Returns the settings of a step: the scene's, except for those that the method fixes.
   std::function<SolverSettings(const Method&, SolverSettings)> settings;
