@@ -1,5 +1,5 @@
-// Tests worlds whose bodies touch each other: against a wall in their middle, against what must be kept, and for the
-// same bits however the film is made.
+// Tests worlds whose bodies touch each other or themselves: against a wall in their middle, against what must be kept,
+// and for the same bits however the film is made.
 #include <gtest/gtest.h>
 
 #include <algorithm>

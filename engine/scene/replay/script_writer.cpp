@@ -96,8 +96,8 @@ std::optional<std::string> Script::with_the_scene_named(Config replay, const std
   return std::nullopt;
 }
 
-// Where naming the scene, with the settings in [set], does not give the same scene, the scene is written anew: settings
-// may reach a grab, or depend on their order.
+// The replay names the scene's file and has the settings in [set]. Settings may reach a grab, or depend on their order,
+// so this does not always give the same scene; where it does not, the scene is written anew.
 ReplayFiles Script::replay_files(const std::filesystem::path& file, int frames, const PlayedSession& session) const {
   Parts& parts = *parts_;
   const std::filesystem::path& assets = parts.scene_file.assets();

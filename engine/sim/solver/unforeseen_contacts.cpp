@@ -9,19 +9,13 @@
 namespace supple {
 namespace {
 
-// Tells whether a contact is that of an edge with one of a solid.
-bool is_at_ridge(const Model& model, const Contact& contact) {
-  return contact.stencil.is_between_edges() && !contact.other.is_collider() && model.parts[contact.other.part].solid;
-}
-
 // Returns the contact of the same point with the same collider or part, or of the same edge with the same edge of a
 // solid; null: there is none. Of cloth, all contacts with one number count as the same.
 const Contact* find_same(const Model& model, const std::vector<Contact>& list, const Contact& contact) {
-  const bool at_ridge = is_at_ridge(model, contact);
+  const bool with_cloth = !contact.other.is_collider() && !model.parts[contact.other.part].solid;
   auto at = std::lower_bound(list.begin(), list.end(), contact, comes_before);
   for (; at != list.end() && !comes_before(contact, *at); ++at) {
-    if (is_at_ridge(model, *at) != at_ridge) continue;
-    if (!at_ridge || at->stencil.vertex == contact.stencil.vertex) return &*at;
+    if (with_cloth || is_same_contact(contact, *at)) return &*at;
   }
   return nullptr;
 }
