@@ -246,6 +246,13 @@ TEST_F(FilmFolder, HasAFilmOfAnyFormat) {
   EXPECT_FALSE(std::filesystem::exists(out("bar") / "video.gif")) << "an earlier film of the folder is still there";
   ASSERT_EQ(film({"--force", "--format", "png"}).status, 0);
   EXPECT_FALSE(std::filesystem::exists(out("bar") / "video.mp4"));
+  EXPECT_FALSE(std::filesystem::exists(out("bar") / "index.html")) << "the page of an earlier film is still there";
+  ASSERT_EQ(film({"--force", "--format", "mov"}).status, 0);
+  EXPECT_EQ(run(folder_.path, {"page", "out/bar"}).status, 0);
+  EXPECT_NE(read_file(out("bar") / "index.html").find("Browsers do not play the film of this run, video.mov; "),
+            std::string::npos);
+  ASSERT_EQ(film({"--no-video"}).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(out("bar") / "video.mov")) << "a run that makes no film removed one";
   EXPECT_EQ(film({"--format", "avi"}).status, 2);
   EXPECT_EQ(film({"--quality", "excellent"}).status, 2);
   const Result none = film({"--film-only", "--format", "png"});

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <regex>
 #include <set>
 
@@ -229,14 +230,36 @@ select = { box = [[0, 0.4, 0], [1, 1, 1]] }
             "scene.toml:9:10: with handle 'high' every vertex of body 'body' is held: nothing is left to move");
 }
 
-// Makes a scene and a shape that use every key; each model is given once by its own parameters and once by Young's
-// modulus.
+constexpr const char* material_path = "body[].material.";
+
+// Holds, by the path of a material's key and by what it means there, the models that give it this meaning.
+using ModelsByMeaning = std::map<std::string, std::map<std::string, std::set<std::string>>>;
+
+// Returns what a material's key means. models: how many there are; what only some of them have is said with their
+// names.
+std::string meaning_by_model(const std::map<std::string, std::set<std::string>>& meanings, std::size_t models) {
+  std::vector<std::string> parts;
+  for (const auto& [meaning, names] : meanings)
+    parts.push_back(names.size() == models ? meaning : fmt::format("{}: {}", fmt::join(names, ", "), meaning));
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+// Makes a scene and a shape that use every key; each model is given once by its own parameters and, where it can be,
+// once by Young's modulus.
 std::vector<DocumentedKey> all_keys() {
   std::vector<DocumentedKey> keys;
-  std::vector<std::string> materials = {"{ model = \"neo-hookean\", young = 1, poisson = 0 }",
-                                        "{ model = \"spline\", preset = \"A\", mu = 1 }"};
-  for (const std::string& model : test::model_names()) materials.push_back("{ model = \"" + model + "\" }");
-  for (const std::string& material : materials) {
+  const std::vector<std::string> models = test::model_names();
+  const std::string by_young = ", young = 1, poisson = 0";
+  std::vector<std::pair<std::string, std::string>> materials = {
+      {"neo-hookean", by_young},
+      {"spline", ", preset = \"A\", mu = 1"},
+      {"spline", ", preset = \"A\"" + by_young},
+  };
+  for (const std::string& model : models) materials.emplace_back(model, "");
+  ModelsByMeaning meanings;
+  for (std::size_t k = 0; k < materials.size(); ++k) {
+    const auto [model, parameters] = materials[k];
+    const std::string material = fmt::format("{{ model = \"{}\"{} }}", model, parameters);
     Config config = Config::parse(fmt::format(R"([solver]
 method = {{ matrix = "system" }}
 [solver.contact]
@@ -288,7 +311,15 @@ subtitles = [{{ from = 0, to = 1, text = "a line" }}]
                                               material),
                                   "keys", test::assets);
     (void)read_scene(config);
-    keys.insert(keys.end(), config.documented().begin(), config.documented().end());
+    for (const DocumentedKey& key : config.documented()) {
+      keys.push_back(key);
+      if (key.path.starts_with(material_path)) meanings[key.path][key.meaning].insert(model);
+      if (key.path == material_path + std::string("young") && parameters.empty())
+        materials.emplace_back(model, by_young);
+    }
+  }
+  for (DocumentedKey& key : keys) {
+    if (key.path.starts_with(material_path)) key.meaning = meaning_by_model(meanings.at(key.path), models.size());
   }
   return keys;
 }

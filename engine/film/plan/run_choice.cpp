@@ -24,7 +24,7 @@ bool leaves_less(const FilmPlan& plan, const std::filesystem::path& run) {
   std::error_code error;
   const bool pictures = plan.pictures == FilmPictures::all && !plan.film_only;
   if (!pictures && has_files(run / "frames")) return true;
-  for (const FilmFormat format : {FilmFormat::mp4, FilmFormat::webm, FilmFormat::gif}) {
+  for (const FilmFormat format : {FilmFormat::mp4, FilmFormat::webm, FilmFormat::mov, FilmFormat::gif}) {
     if (!plan.wants_video() && std::filesystem::exists(run / film_file(format), error)) return true;
   }
   return (plan.save_states.empty() && has_files(run / "states")) ||

@@ -118,21 +118,20 @@ std::optional<Figures> figures_of(const GalleryScene& scene) {
   return figures;
 }
 
-bool has_film(const GalleryScene& scene) {
-  std::error_code error;
-  return !scene.folder.empty() && std::filesystem::exists(scene.folder / "video.mp4", error);
+std::optional<PageFilm> film_of(const GalleryScene& scene) {
+  return scene.folder.empty() ? std::nullopt : page_film(scene.folder);
 }
 
 // fps: of the film.
 std::string view_html(const GalleryScene& scene, double fps) {
   std::error_code error;
-  const std::filesystem::path poster = scene.folder / "poster.png", film = scene.folder / "video.mp4";
+  const std::filesystem::path poster = scene.folder / "poster.png";
   const bool has_poster = !scene.folder.empty() && std::filesystem::exists(poster, error);
-  if (has_film(scene))
+  if (const std::optional<PageFilm> film = film_of(scene))
     return fmt::format(
         "<video tabindex=\"0\" aria-label=\"{}\" data-rate=\"{}\" loop muted playsinline preload=\"metadata\" "
         "src=\"{}\"></video>{}",
-        markup_text(scene.name), fps, data_address(film, "video/mp4"),
+        markup_text(scene.name), fps, data_address(film->file, film->type),
         has_poster ? "<img class=\"paper\" alt=\"\" src=\"" + data_address(poster, "image/png") + "\">" : "");
   if (has_poster)
     return fmt::format("<img alt=\"{}\" src=\"{}\">", markup_text(scene.name), data_address(poster, "image/png"));
@@ -143,7 +142,7 @@ std::string card_html(const GalleryScene& scene, const std::optional<Figures>& f
   std::string html =
       fmt::format("<section class=\"card\" id=\"{0}\"><div class=\"view{3}\">{1}</div>\n<h3>{2}</h3><code>{0}</code>\n",
                   markup_text(scene.name), view_html(scene, figures ? figures->fps : 30),
-                  markup_text(scene.title.empty() ? scene.name : scene.title), has_film(scene) ? " film" : "");
+                  markup_text(scene.title.empty() ? scene.name : scene.title), film_of(scene) ? " film" : "");
   if (figures && !figures->run.rows.empty())
     html += fmt::format(
         "<p class=\"figures\"><span><b>{:.3g} ms</b> of solving a frame</span><span><b>{}</b> vertices</span>"

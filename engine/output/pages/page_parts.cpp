@@ -98,6 +98,15 @@ std::string page_end(std::string_view script) {
   return fmt::format("<script>{}{}</script></body></html>\n", common_script, script);
 }
 
+std::optional<PageFilm> page_film(const std::filesystem::path& run) {
+  std::error_code error;
+  for (const char* kind : {"mp4", "webm"}) {
+    std::filesystem::path film = run / (std::string("video.") + kind);
+    if (std::filesystem::exists(film, error)) return PageFilm{std::move(film), std::string("video/") + kind};
+  }
+  return std::nullopt;
+}
+
 std::string data_address(const std::filesystem::path& file, std::string_view type) {
   const std::string bytes = read_file(file);
   return fmt::format("data:{};base64,{}", type,

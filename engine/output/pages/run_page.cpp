@@ -146,27 +146,28 @@ std::string film_html(const RunRecord& run) {
     return picture_file(run.folder / "frames", static_cast<int>(frame));
   };
   const bool poster = std::filesystem::exists(picture_of(0), error);
-  for (const char* kind : {"mp4", "webm"}) {
-    const std::filesystem::path film = run.folder / (std::string("video.") + kind);
-    if (!std::filesystem::exists(film, error)) continue;
+  if (const std::optional<PageFilm> film = page_film(run.folder)) {
     // The still is the film's poster, and what paper shows of it.
     return fmt::format(
         "<video controls loop muted playsinline preload=\"auto\" src=\"{}\"></video>\n"
         "<img class=\"picture paper\" alt=\"a picture of the film\"{}>\n"
         "<p class=\"soft keys screen\"><kbd>Space</kbd> plays and stops, <kbd>←</kbd> <kbd>→</kbd> step by one frame, "
         "<kbd>Home</kbd> <kbd>End</kbd> go to the first and the last.</p>\n",
-        data_address(film, std::string("video/") + kind),
+        data_address(film->file, film->type),
         poster ? " src=\"" + data_address(picture_of(0), "image/png") + "\"" : "");
   }
   if (std::filesystem::exists(run.folder / "video.gif", error))
     return fmt::format("<img class=\"picture\" alt=\"the film\" src=\"{}\">\n",
                        data_address(run.folder / "video.gif", "image/gif"));
+  const std::string why = std::filesystem::exists(run.folder / "video.mov", error)
+                              ? "Browsers do not play the film of this run, video.mov"
+                              : "This run has no film";
   if (run.rows.empty() || !std::filesystem::exists(picture_of(run.rows.size() - 1), error))
-    return "<p class=\"soft\">This run has no film.</p>\n";
+    return fmt::format("<p class=\"soft\">{}.</p>\n", why);
   return fmt::format(
       "<img class=\"picture\" alt=\"the last frame\" src=\"{}\">\n"
-      "<p class=\"soft\">This run has no film; this is its last picture.</p>\n",
-      data_address(picture_of(run.rows.size() - 1), "image/png"));
+      "<p class=\"soft\">{}; this is its last picture.</p>\n",
+      data_address(picture_of(run.rows.size() - 1), "image/png"), why);
 }
 
 constexpr std::array slowest_heads = {"all stages [ms]", "solving", "of it evaluating", "of it linear solves",

@@ -130,7 +130,7 @@ RunFolder::RunFolder(const std::filesystem::path& path, int kept_frames) : path_
   remove_pictures(path / "frames", kept_frames);
   remove_passes(path / "passes", kept_frames);
   remove_film(path);
-  for (const char* part : {"profile.json", "trace.json"}) std::filesystem::remove(path / part, error);
+  for (const char* part : {"profile.json", "trace.json", "index.html"}) std::filesystem::remove(path / part, error);
   for (const char* part : {"frames", "motion", "checkpoint"}) make_folder(path / part);
 }
 

@@ -50,18 +50,16 @@ SplineCurve read_curve(const ConfigTable& table, const Key& key) {
 
 // Reads the curves, or one of the presets, which are sampled from Neo-Hookean parameters.
 Spline read_spline(const ConfigTable& table) {
-  const std::string preset =
-      table.choice({"preset", "", "of a spline: A resists compression more than Neo-Hookean, B tension"}, "none",
-                   {{"none", "A", "B"}});
+  const std::string preset = table.choice({"preset", "", "A resists compression more than Neo-Hookean, B tension"},
+                                          "none", {{"none", "A", "B"}});
   if (preset != "none") {
     const auto young = read_lame(table);
     Lame lame{1, 0};
     if (young) {
       lame = *young;
     } else {
-      lame.mu = table.number({"mu", "Pa", "of a spline's preset: shear modulus"}, std::nullopt, Range::positive());
-      lame.lambda =
-          table.number({"lambda", "Pa", "of a spline's preset: first Lame parameter"}, 0.0, Range::at_least(0));
+      lame.mu = table.number({"mu", "Pa", "shear modulus, with a preset"}, std::nullopt, Range::positive());
+      lame.lambda = table.number({"lambda", "Pa", "first Lame parameter, with a preset"}, 0.0, Range::at_least(0));
     }
     return preset == "A" ? Spline::preset_a(lame) : Spline::preset_b(lame);
   }

@@ -99,9 +99,9 @@ ContactSettings read_contact(const ConfigTable& table, ContactSettings contact) 
                                               "what of a body touches: its vertices, or also points of edges and faces "
                                               "where a collider is finer than the body's surface"},
                                              contact.points);
-  contact.direction =
-      table.word<ContactDirection>({"direction", "", "what search directions make of contacts"}, contact.direction,
-                                   {.allowed = all_names<ContactDirection>(), .gone = {{"ignored", "\"low-rank\""}}});
+  contact.direction = table.word<ContactDirection>(
+      {"direction", "", "how search directions know contacts: each by itself, or all together by a small system"},
+      contact.direction, {.allowed = all_names<ContactDirection>(), .gone = {{"ignored", "\"low-rank\""}}});
   if (table.has("history"))
     table.complain("history", "history: exists no more; all pairs of L-BFGS have the contacts in force now");
   return contact;

@@ -34,7 +34,7 @@ class NewtonDirections final : public SearchRule {
 SearchLimits limits_of(const StepContext& c, Hardness hardness, double gained) {
   constexpr double small_share = 1e-4,
                    smaller_share = 1e-8;  // the smaller one: energy from nothing and turning need it
-  constexpr int most_to_turn = 30;        // iterations; docs/method.md ("Hard steps") has the cube that needs some 20
+  constexpr int most_to_turn = 30;        // iterations; a stiff cube that hits a post beside its middle needs some 20
   const int most = (c.inputs.solver.rounds - 1) * c.inputs.solver.iterations;
   return {.iterations = hardness == Hardness::far_in_motion ? std::min(most, most_to_turn) : most,
           .enough = (hardness == Hardness::far_in_energy ? small_share : smaller_share) * gained,
