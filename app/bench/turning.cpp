@@ -66,16 +66,16 @@ constexpr std::array other_balls = {300, 4000};
 
 struct Ball {
   Substance substance;
-  int vertices = usual_ball;
+  int vertices;
 };
 
 std::vector<Ball> balls(std::span<const int> other_sizes) {
+  std::vector<int> sizes = {usual_ball};
+  sizes.insert(sizes.end(), other_sizes.begin(), other_sizes.end());
   std::vector<Ball> list;
-  for (const char* name : {"jelly", "flesh", "rubber"}) list.push_back({preset(name)});
-  for (const double young : {1e7, 1e8, 1e9}) list.push_back({stiff_rubber(young)});
-  for (const int vertices : other_sizes) {
-    list.push_back({preset("rubber"), vertices});
-    list.push_back({stiff_rubber(1e8), vertices});
+  for (const int vertices : sizes) {
+    for (const char* name : {"jelly", "flesh", "rubber"}) list.push_back({preset(name), vertices});
+    for (const double young : {1e7, 1e8, 1e9}) list.push_back({stiff_rubber(young), vertices});
   }
   return list;
 }
