@@ -8,6 +8,7 @@
 #include "output/files/png_file.h"
 #include "output/files/whole_file.h"
 #include "output/motion/point_cache.h"
+#include "output/pages/page_parts.h"
 #include "output/run/frame_rows.h"
 #include "output/run/profile.h"
 #include "output/run/row_tally.h"
@@ -342,6 +343,8 @@ TEST(RunFolder, RemovesOnlyWhatRunsWrite) {
   for (const char* made : {"frames/sub", "states/mine-000003", "states/bar-000003"})
     std::filesystem::create_directories(run / made);
   write_whole_file(run / "states/bar-000003/q.npy", std::string_view("x"));
+  const std::filesystem::path page = run / "index.html";
+  write_whole_file(page, page_begin("a film", "") + page_end(""));
   for (const auto* files : {&own, &others}) {
     for (const std::filesystem::path& file : *files) {
       if (!std::filesystem::is_directory(run / file)) write_whole_file(run / file, std::string_view("x"));
@@ -350,9 +353,13 @@ TEST(RunFolder, RemovesOnlyWhatRunsWrite) {
   const RunFolder going_on(run, 1);
   EXPECT_TRUE(std::filesystem::exists(run / own[0]));
   EXPECT_FALSE(std::filesystem::exists(run / own[1]));
+  EXPECT_TRUE(std::filesystem::exists(page));
   const RunFolder anew(run);
+  EXPECT_FALSE(std::filesystem::exists(page)) << "the page of the film before is still there";
   for (const std::filesystem::path& file : own) EXPECT_FALSE(std::filesystem::exists(run / file)) << file;
   for (const std::filesystem::path& file : others) EXPECT_TRUE(std::filesystem::exists(run / file)) << file;
+  write_whole_file(page, std::string_view("<!DOCTYPE html><title>somebody's own</title>"));
+  EXPECT_TRUE(std::filesystem::exists(RunFolder(run).path() / "index.html"));
 }
 
 TEST(RunFolder, TakesOverWhatARunThatWasKilledAtItsBeginningLeft) {

@@ -160,7 +160,7 @@ bool is_of_run(const std::filesystem::path& file, const std::filesystem::path& r
   const std::string first = inside.begin()->string();
   for (const char* own :
        {"frames", "passes", "motion", "states", "fields", "checkpoint", "run.json", "profile.json", "trace.json",
-        "video.mp4", "video.webm", "video.mov", "video.gif", "poster.png", "sheet.png"}) {
+        "video.mp4", "video.webm", "video.mov", "video.gif", "poster.png", "sheet.png", "index.html"}) {
     if (first == own || first == std::string(own) + ".part") return true;
   }
   return false;

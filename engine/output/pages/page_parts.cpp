@@ -4,6 +4,7 @@
 
 #include "base/read_file.h"
 #include "output/files/markup.h"
+#include "output/run/run_folder.h"
 
 namespace supple {
 namespace {
@@ -89,9 +90,9 @@ for (const box of document.querySelectorAll(".box")) box.tabIndex = 0;
 
 std::string page_begin(const std::string& title, std::string_view style) {
   return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n{}\n<meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n<style>{}{}</style></head><body>\n",
-      markup_text(title), common_style, style);
+      page_mark, markup_text(title), common_style, style);
 }
 
 std::string page_end(std::string_view script) {

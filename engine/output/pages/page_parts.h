@@ -20,14 +20,13 @@ std::string page_end(std::string_view script);
 // "image/png". Throws InputError naming the file where it cannot be read.
 std::string data_address(const std::filesystem::path& file, std::string_view type);
 
-// Holds a film that browsers play in a <video>.
+// Holds a film in a container that browsers know, for a <video>.
 struct PageFilm {
   std::filesystem::path file;
   std::string type;  // the media type, such as "video/mp4"
 };
 
-// Returns the film of a run's folder, and nothing where the folder has none that browsers play (a GIF is a picture to
-// them).
+// Returns the film of a run's folder, and nothing where the folder has none of that kind (a GIF is a picture to them).
 std::optional<PageFilm> page_film(const std::filesystem::path& run);
 
 // Returns the colour of a graph's curve, as a style has it; the colours of a page on a dark screen are lighter ones.

@@ -102,6 +102,15 @@ bool is_beginning_of_run(const std::filesystem::path& path) {
   return true;
 }
 
+// Removes the page of an earlier run, which shows another film than the folder will have.
+void remove_page(const std::filesystem::path& page) {
+  std::string head(1000, '\0');
+  std::ifstream file(page, std::ios::binary);
+  file.read(head.data(), std::streamsize(head.size()));
+  std::error_code error;
+  if (head.find(page_mark) != std::string::npos) std::filesystem::remove(page, error);
+}
+
 void make_folder(const std::filesystem::path& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
@@ -126,11 +135,12 @@ RunFolder::RunFolder(const std::filesystem::path& path, int kept_frames) : path_
     write_whole_file(path / "run.json", std::string_view("{}\n"));
     remove_own(path / "checkpoint", is_checkpoint);
     remove_run(path);
+    remove_page(path / "index.html");
   }
   remove_pictures(path / "frames", kept_frames);
   remove_passes(path / "passes", kept_frames);
   remove_film(path);
-  for (const char* part : {"profile.json", "trace.json", "index.html"}) std::filesystem::remove(path / part, error);
+  for (const char* part : {"profile.json", "trace.json"}) std::filesystem::remove(path / part, error);
   for (const char* part : {"frames", "motion", "checkpoint"}) make_folder(path / part);
 }
 

@@ -57,6 +57,9 @@ void remove_film(const std::filesystem::path& folder);
 // Removes the pictures of frames from `first` on, also incomplete ones. Other files stay.
 void remove_pictures(const std::filesystem::path& frames, int first);
 
+// Stands in the head of all pages that the program makes, so that a page is known from one that somebody else wrote.
+inline constexpr std::string_view page_mark = "<meta name=\"generator\" content=\"supple\">";
+
 class RunFolder {
  public:
   // Makes the folder, or takes over one that an earlier run left. That run's results are removed, except for what
