@@ -24,8 +24,9 @@ bool leaves_less(const FilmPlan& plan, const std::filesystem::path& run) {
   std::error_code error;
   const bool pictures = plan.pictures == FilmPictures::all && !plan.film_only;
   if (!pictures && has_files(run / "frames")) return true;
-  for (const FilmFormat format : {FilmFormat::mp4, FilmFormat::webm, FilmFormat::mov, FilmFormat::gif}) {
-    if (!plan.wants_video() && std::filesystem::exists(run / film_file(format), error)) return true;
+  for (const Name<FilmFormat>& format : Names<FilmFormat>::table) {
+    const std::string film = film_file(format.value);
+    if (!plan.wants_video() && !film.empty() && std::filesystem::exists(run / film, error)) return true;
   }
   return (plan.save_states.empty() && has_files(run / "states")) ||
          (plan.fields_every == 0 && has_files(run / "fields"));
