@@ -110,7 +110,8 @@ ContactSettings read_contact(const ConfigTable& table, ContactSettings contact) 
 SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
   s.iterations = table.integer(
       {"iterations", "",
-       "quasi-Newton iterations of a round; a step that gains energy from nothing makes up to `rounds` rounds"},
+       "quasi-Newton iterations of a round; a step that gains energy from nothing makes up to `rounds` rounds, and one "
+       "that is far from its minimum up to three"},
       s.iterations, Range::between(1, 10000));
   s.history =
       table.integer({"history", "", "window m of L-BFGS; 0 is plain quasi-Newton"}, s.history, Range::between(0, 100));
@@ -150,8 +151,8 @@ SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
                                      s.elements);
   s.rounds = table.integer({"rounds", "",
                             "a step whose answer gains energy from nothing goes on, for so many times `iterations` in "
-                            "all; one that still does, or is far from its minimum, is finished by Newton's method; 1: "
-                            "neither"},
+                            "all, and one of a solid that is far from its minimum for up to three; one that still does "
+                            "or is, is finished by Newton's method; 1: none of these"},
                            s.rounds, Range::between(1, 100));
   return s;
 }

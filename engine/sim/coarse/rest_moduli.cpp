@@ -23,6 +23,13 @@ bool is_loose_at_rest(const Material& material, const SystemStiffness& stiffness
   return rest_moduli(material).mu < loose * stiffness.k;
 }
 
+bool has_loose_material(const Model& model) {
+  for (std::size_t r = 0; r < model.materials.size(); ++r) {
+    if (is_loose_at_rest(model.materials[r], model.stiffness[r])) return true;
+  }
+  return false;
+}
+
 Mat3 plane_moduli(const Membrane& membrane) {
   return std::visit(
       [](const auto& sheet) {

@@ -4,6 +4,7 @@
 #include "base/types.h"
 #include "sim/materials/material.h"
 #include "sim/materials/membrane.h"
+#include "sim/model/model.h"
 
 namespace supple {
 
@@ -16,6 +17,9 @@ RestModuli rest_moduli(const Material& material);
 
 // Tells whether a material has next to none of its stiffness at rest: a mu of less than a hundredth of k.
 bool is_loose_at_rest(const Material& material, const SystemStiffness& stiffness);
+
+// Tells whether a model has such a material in any region.
+bool has_loose_material(const Model& model);
 
 // Returns the symmetric matrix that takes the strains of warp and weft and twice their shear strain to the stresses of
 // a membrane that is taut [N/m].

@@ -108,13 +108,6 @@ double promise_over_gains(const StepReport& report) {
   return count == 0 ? 0 : report.decrement / std::exp(logarithms / count);
 }
 
-bool has_loose_material(const Model& model) {
-  for (std::size_t r = 0; r < model.materials.size(); ++r) {
-    if (is_loose_at_rest(model.materials[r], model.stiffness[r])) return true;
-  }
-  return false;
-}
-
 // Returns the weight that the logarithm of the most that can be left has beside that of the way ahead. A search that
 // converges promises about a tenth of what its last iterations gained, and its way ahead is a good forecast. One that
 // goes on gaining as much as before has motions left which A takes for far stiffer than they are, and directions hardly
@@ -229,13 +222,26 @@ bool is_near_enough(const Model& model, const StepInputs& inputs, const Position
   return q == nullptr || motion_estimate(model, inputs, *q, w) < target;
 }
 
+namespace {
+
+constexpr double small_error = 0.03;  // a film says that a step is unsolved from 0.1 on
+
+}  // namespace
+
 bool is_still(const Model& model, const StepInputs& inputs, const Positions& q, double gained, OpenWorkspace& w) {
-  constexpr double small = 0.03;  // a film says that a step is unsolved from 0.1 on
   const SolverSettings& solver = inputs.solver;
   if (solver.still <= 0 || solver.levels < 2) return false;
   if (way_in_sizes(model, w.direction) * times_ahead(w.report) >= solver.still) return false;
   report_motion_estimates(model, inputs, q, w);
-  return w.report.motion_ahead < small && error_at_end(model, inputs, w, gained) < small;
+  return w.report.motion_ahead < small_error && error_at_end(model, inputs, w, gained) < small_error;
+}
+
+bool is_far(const Model& model, const StepInputs& inputs, const Positions& q, bool has_gone_on, OpenWorkspace& w) {
+  constexpr double seen = 1e-4;           // body sizes
+  constexpr double smaller_error = 0.01;  // an estimate of 0.03 may be five times too small
+  if (!has_way_ahead(w.report)) return false;
+  if (!has_gone_on && way_in_sizes(model, w.direction) * times_ahead(w.report) < seen) return false;
+  return motion_estimate(model, inputs, q, w) > (has_gone_on ? smaller_error : small_error);
 }
 
 }  // namespace supple

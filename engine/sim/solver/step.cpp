@@ -14,10 +14,10 @@
 #include "sim/solver/error_estimate.h"
 #include "sim/solver/first_iterate.h"
 #include "sim/solver/from_staying.h"
+#include "sim/solver/further_iterations.h"
 #include "sim/solver/iterations.h"
 #include "sim/solver/lbfgs.h"
 #include "sim/solver/matrix_rule.h"
-#include "sim/solver/more_rounds.h"
 #include "sim/solver/newton_finish.h"
 
 namespace supple {
@@ -79,7 +79,7 @@ void estimate_errors(const StepContext& c) {
   report_motion_estimates(c.model, c.inputs, c.state.x, c.w);
 }
 
-// Makes the first search, from the first iterate, with its further rounds.
+// Makes the first search, from the first iterate, with its further iterations.
 void iterate(StepContext& c) {
   TimeBudget budget(c.inputs, c.w, TimeBudget::from_first_iterate);
   const int iterations = c.inputs.solver.iterations;
@@ -89,7 +89,7 @@ void iterate(StepContext& c) {
                          .begins_in_single = may_begin_in_single(c)};
   Iterations search(c.model, c.inputs, c.w, c.rule, origin_of(c));
   search.run(limits);
-  while (needs_another_round(c, search, limits)) search.run(limits = with_another_round(c, limits));
+  while (const int more = further_iterations(c, search, limits)) search.run(limits = with_more(c, limits, more));
   search.look_further(limits);
   c.gave_up = search.end() == SearchEnd::trials;
 }

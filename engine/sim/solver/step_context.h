@@ -1,6 +1,6 @@
 // Holds what the parts of one step share: the problem, the memory they work in, and what the step has found out about
 // itself so far. step() makes one for each step; first iterates (first_iterate.h) and searches
-// (more_rounds.h, from_staying.h, newton_finish.h) read and write it.
+// (further_iterations.h, from_staying.h, newton_finish.h) read and write it.
 #pragma once
 
 #include <optional>
