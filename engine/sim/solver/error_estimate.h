@@ -80,9 +80,9 @@ bool is_still(const Model& model, const StepInputs& inputs, const Positions& q, 
               OpenWorkspace& workspace);
 
 // Tells whether the iterate is so far from the minimum that a film would show it: a part has more than 1e-4 of its size
-// left to go, and by the estimate more than 3 % of the motion of the step from q (n x 3) are missing. Once a step has
-// gone on for that reason, whatever is left of its way, it is far until the estimate is below 1 %. Goes by the last
-// direction that was found, and so may be asked after an iteration, too. Overwrites the trial iterate and the
+// left to go, and by the estimate more than 3 % of the motion of the step from q (n x 3) are missing. A step that has
+// gone on beyond its iterations is far until the estimate is below 1 %, however short the way that is left. Goes by the
+// last direction that was found, and so may be asked after an iteration, too. Overwrites the trial iterate and the
 // workspace's scratch.
 bool is_far(const Model& model, const StepInputs& inputs, const Positions& q, bool has_gone_on,
             OpenWorkspace& workspace);
