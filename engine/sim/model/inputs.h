@@ -97,7 +97,7 @@ struct SolverSettings {
   // Single: elements may be evaluated in single precision while that is enough (solver/element_precision.h).
   Precision elements = Precision::single_precision;
   double budget_ms = 0;  // of one step: an iteration that would probably end later does not begin; 0: no bound
-  int rounds = 5;        // most rounds of `iterations`, where the answer so far is far from the minimum
+  int rounds = 5;        // most rounds of `iterations` in a step that goes on (solver/further_iterations.h); 1: it ends
   bool newton = true;    // Newton's method may finish hard steps (solver/newton_finish.h)
   ContactSettings contact;
   ChebyshevSettings chebyshev;

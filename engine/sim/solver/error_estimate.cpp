@@ -238,7 +238,7 @@ bool is_still(const Model& model, const StepInputs& inputs, const Positions& q, 
 
 bool is_far(const Model& model, const StepInputs& inputs, const Positions& q, bool has_gone_on, OpenWorkspace& w) {
   constexpr double seen = 1e-4;           // body sizes
-  constexpr double smaller_error = 0.01;  // an estimate of 0.03 may be five times too small
+  constexpr double smaller_error = 0.01;  // for one that has gone on, however short its way: most of it may be missing
   if (!has_way_ahead(w.report)) return false;
   if (!has_gone_on && way_in_sizes(model, w.direction) * times_ahead(w.report) < seen) return false;
   return motion_estimate(model, inputs, q, w) > (has_gone_on ? smaller_error : small_error);

@@ -79,8 +79,8 @@ Hardness hardness_of(const StepContext& c) {
   if (c.gave_up || is_unsolved(report.error_estimate, report.iterations, report.line_search))
     return Hardness::far_in_energy;
   // With one level, as in the paper, nearly every step of a stiff body would be hard by its motion.
-  const bool is_far = is_unsolved(report.motion_ahead, report.iterations, 0);
-  return c.inputs.solver.levels > 1 && is_far ? Hardness::far_in_motion : Hardness::none;
+  const bool is_off = is_unsolved(report.motion_ahead, report.iterations, 0);
+  return c.inputs.solver.levels > 1 && is_off ? Hardness::far_in_motion : Hardness::none;
 }
 
 void finish_by_newton(StepContext& c, Hardness hardness) {

@@ -9,7 +9,7 @@
 namespace supple {
 
 void OpenWorkspace::prepare(const Model& model, const SolverSettings& solver) {
-  // A step may go on for several rounds, make a second search, and be finished by as many iterations of Newton's
+  // A step may go on for all of its rounds, make a second search, and be finished by as many iterations of Newton's
   // method.
   const std::size_t most_values = 2 * (std::size_t(solver.rounds) + 1) * (std::size_t(solver.iterations) + 1);
   if (report.objective.capacity() < most_values) report.objective.reserve(most_values);
