@@ -84,7 +84,8 @@ def test_the_report_adds_up(cube):
     row = report["bodies"]["cube"]
     parts = sum(row[name] for name in row if name.endswith("_ms") and name != "step_ms")
     assert report["frame"] == 5 and parts <= row["step_ms"] * 1.001
-    assert row["iterations"] == 10 and row["stop_reason"] == "iterations" and not row["unsolved"]
+    assert 10 < row["iterations"] <= 30  # the cube lands, and such a step goes on
+    assert row["stop_reason"] == "iterations" and not row["unsolved"]
 
 
 def test_pairs_name_bodies_that_touch():
