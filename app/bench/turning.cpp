@@ -372,8 +372,8 @@ ReportSection bench_turning(const BenchSetting& setting) {
       "Each case is filmed four times from the same start, with h = 1/30 s: \"ours\" as a scene is solved that says "
       "nothing of its solver, with ten iterations a step, and more where it is far; \"paper's\" with ten that start "
       "as the paper's do; \"solved\" with 200 iterations a step, and once more with 400. One number tells how far the "
-      "body has come. "
-      "The tables have the worst difference of all frames from the solved film, and the number itself at the end.\n\n"
+      "body has come. The tables have the worst difference of all frames from the solved film, and the number itself "
+      "at the end.\n\n"
       "Films go their own ways: a difference is what all steps so far have left, not the error of one. The film that "
       "is solved again tells how far two solved films come apart: a stiff ball of facets slides or sticks by next to "
       "nothing. The last column tells how well the worst step of the solved film is solved.";

@@ -1,13 +1,10 @@
-// Lets the iterations of a step go on, for two reasons:
-// - Its answer gains energy from nothing (energy_gain.h), as steps that are left far from their minimum can do again
-// and
-//   again: a body that hung under many times the load that its stiffness bears was stretched 368 times.
-// - The body has so much of its way left to go that it can be seen (error_estimate.h, is_far). Most such steps come
-// near
-//   within a few more iterations, and a direction of Newton's method (newton_finish.h), which has what is still hard
-//   then, costs as much as 20 to 200 evaluations.
-// A step that need not go on pays next to nothing; where its searches had a hard time, an evaluation each time that it
-// is asked.
+// Lets the iterations of a step go on, for two reasons. The first is that its answer gains energy from nothing
+// (energy_gain.h), as steps that are left far from their minimum can do again and again: a body that hung under many
+// times the load that its stiffness bears was stretched 368 times. The second is that the body has so much of its way
+// left to go that it can be seen (error_estimate.h, is_far). Most such steps come near within a few more iterations,
+// and a direction of Newton's method (newton_finish.h), which has what is still hard then, costs as much as 20 to 200
+// evaluations. A step that need not go on pays next to nothing; where its searches had a hard time, an evaluation each
+// time that it is asked.
 #pragma once
 
 #include "sim/solver/iterations.h"
