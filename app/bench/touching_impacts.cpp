@@ -106,8 +106,8 @@ ReportTable head_on_table(const BenchSetting& setting) {
   table.note =
       "Cubes of 0.2 m with 5 x 5 x 5 vertices, stable Neo-Hookean, 1e5 Pa, Poisson's ratio 0.4, 1000 kg/m^3, without "
       "friction and gravity; 60 frames. The right cube is the mirror image of the left one, its mesh too. The "
-      "difference is the largest of all positions of the left cube from those of "
-      "the cube at the wall, over the cube's diagonal. The change of momentum is over what the cubes exchange, that of "
+      "difference is the largest of all positions of the left cube from those of the cube at the wall, over the cube's "
+      "diagonal. The change of momentum is over what the cubes exchange, that of "
       "angular momentum over one cube's momentum times its diagonal; energy is kinetic and elastic, the most above "
       "its value at the start. Backward Euler takes energy away, so it may well be negative after the start.";
   table.columns = {"speed [m/s]",

@@ -11,7 +11,6 @@
 #include "app/bench/sections.h"
 #include "app/bench/touching_film.h"
 #include "app/bench/touching_tables.h"
-#include "scene/definition/solver_def.h"
 
 namespace supple {
 namespace {
@@ -20,13 +19,12 @@ constexpr int settling_frames = 15, timed_frames = 10;
 constexpr double leaning_deg = 2;
 
 // Returns the scene of a row of cubes on ground that slopes down, without friction, to a wall: each leans on the next.
-// The ground is level, and gravity is turned. still: the solver's.
-std::string leaning_row(int count, double still) {
+// The ground is level, and gravity is turned. solver: the text of its table, if it has one.
+std::string leaning_row(int count, const char* solver) {
   constexpr double edge = 0.1, gap_between = 1e-4;
   const double angle = leaning_deg * std::numbers::pi / 180;
-  std::string text =
-      fmt::format("frames = {}\ngravity = [{:.17g}, {:.17g}, 0]\n[solver]\nstill = {:g}\n",
-                  settling_frames + timed_frames, -9.81 * std::sin(angle), -9.81 * std::cos(angle), still);
+  std::string text = fmt::format("frames = {}\ngravity = [{:.17g}, {:.17g}, 0]\n{}", settling_frames + timed_frames,
+                                 -9.81 * std::sin(angle), -9.81 * std::cos(angle), solver);
   for (int i = 0; i < count; ++i) {
     text += fmt::format(
         "[[body]]\nname = \"cube-{}\"\nbox = {{ extent = [{:g}, {:g}, {:g}], cells = [2, 2, 2] }}\n"
@@ -60,7 +58,7 @@ std::vector<double> settled_times(TouchingFilm& film, const std::function<void(c
 }
 
 LeaningRow measure_row(int count, const BenchSetting& setting) {
-  TouchingFilm film(leaning_row(count, 0), *setting.threads);
+  TouchingFilm film(leaning_row(count, "[solver]\nstill = 0\n"), *setting.threads);
   LeaningRow row;
   row.bodies = count;
   for (std::size_t b = 0; b < film.world().size(); ++b) row.vertices += film.world().body(b).model().vertices;
@@ -75,7 +73,7 @@ LeaningRow measure_row(int count, const BenchSetting& setting) {
                                  }),
                    0.5);
   row.trials = double(trials) / std::max(1, iterations);
-  TouchingFilm shipped(leaning_row(count, settings_of_films().still), *setting.threads);
+  TouchingFilm shipped(leaning_row(count, ""), *setting.threads);
   row.film_ms = rank_of(settled_times(shipped), 0.5);
   return row;
 }
@@ -94,9 +92,9 @@ RowOfBodies row_of_bodies(const BenchSetting& setting) {
       "Each step makes all its ten iterations (still = 0): in a film a short row lies still after fewer, as the second "
       "time shows. Cubes of 0.1 m with 27 vertices, stable Neo-Hookean with 1e5 Pa, without friction on ground that "
       "slopes by {:g} degrees towards a wall. The time is the median of {} frames of one step, after {} in which the "
-      "row settles. The "
-      "exponents are the p of bodies^p, and of contacts^p, to which this row and those above it fit best, by least "
-      "squares of logarithms; the contacts are those with bodies and with colliders. A cube in the middle of a long "
+      "row settles. The exponents are the p of bodies^p, and of contacts^p, to which this row and those above it fit "
+      "best, by least squares of logarithms; the contacts are those with bodies and with colliders. A cube in the "
+      "middle of a long "
       "row has more contacts than one alone, which touches colliders only.",
       leaning_deg, timed_frames, settling_frames);
   table.columns = {"bodies",

@@ -19,8 +19,8 @@ constexpr double sphere_radius = 0.1, sphere_young = 2e4, sphere_poisson = 0.4;
 constexpr double pressed_seconds = 2, pressed_rate = 30, most_approach = 0.02 * sphere_radius;  // [m]
 constexpr int pressed_frames = static_cast<int>(pressed_seconds * pressed_rate);
 
-// Of a touching vertex, over its mass / h^2. Vertices at the pole have small masses: with the solver's own 1e4 they
-// would sink in by a tenth of the approach.
+// This is the stiffness of a touching vertex, over its mass / h^2. Vertices at the pole have so little mass that with
+// the default of 1e4 they would sink in by a tenth of the approach.
 constexpr double pressed_stiffness = 1e5;
 
 // Of two equal spheres: 1 / E* = 2 (1 - nu^2) / E, and 1 / R = 1 / R1 + 1 / R2.
@@ -155,10 +155,11 @@ ReportTable hertz_table(const BenchSetting& setting) {
   table.note = fmt::format(
       "Radius R = {:g} m, corotated, E = {:g} Pa, Poisson's ratio {:g}, without friction. The far halves are held and "
       "approach each other by {:g} % of the radius within {:g} s. The meshes are finer towards the pole that is met, "
-      "where "
-      "elements are a quarter as large. With E* = E / (2 (1 - nu^2)) and R* = R / 2, a force "
-      "F makes a patch of radius a = (3 F R* / (4 E*))^(1/3) and an approach of a^2 / R* (Johnson 1985, Contact "
-      "Mechanics, equations 4.22 to 4.24). The radius is that of the measured force by place: Hertz's pressure has a "
+      "where elements are a quarter as large, and contact is ten times as stiff as by default. With E* = E / (2 (1 - "
+      "nu^2)) and R* = R / 2, a force F makes a patch of radius a = (3 F R* / (4 E*))^(1/3) and an approach of a^2 / "
+      "R* "
+      "(Johnson 1985, Contact Mechanics, equations 4.22 to 4.24). The radius is that of the measured force by place: "
+      "Hertz's pressure has a "
       "mean square radius of 2/5 a^2.\n\n"
       "Hertz's spheres are half spaces as far as they deform. What is held here lies only a radius away from the "
       "patch, "
