@@ -6,12 +6,42 @@
 
 namespace supple {
 
+namespace {
+
+// A contact sticks where its friction is at least this share of the stiffness of its normal.
+constexpr double least_friction_that_sticks = 0.01;
+
+// Tells whether all parts are cloth that hardly moves at these velocities (n x 3) [m/s].
+bool is_cloth_that_lies(const Model& model, const Positions& v) {
+  constexpr double little = 1e-3;  // root mean square of a step's way, in sizes
+  return std::all_of(model.parts.begin(), model.parts.end(), [&](const Part& part) {
+    const double most = little * part.size / model.time_step;
+    return !part.solid && v.middleRows(part.first_free, part.free).squaredNorm() <= most * most * part.free;
+  });
+}
+
+}  // namespace
+
 void find_stiff_directions(const Model& model, const std::vector<Contact>& contacts, const Positions& x,
                            ContactCorrection& correction) {
   std::vector<StiffDirection>& stiff = correction.wanted;
   stiff.clear();
+  correction.sticking.clear();
+  correction.loose.clear();
+  const bool may_stick = correction.may_stick;
+  const auto friction_that_sticks = [&](const Contact& contact) {
+    if (!may_stick || contact.depth <= 0 || contact.friction <= 0) return 0.0;
+    const double along = friction_stiffness(contact, x);
+    return along >= least_friction_that_sticks * 2 * contact.stiffness ? along : 0.0;
+  };
   for (const Contact& contact : contacts) {
-    if (contact.depth > 0) stiff.push_back({contact.stencil, contact.normal, 2 * contact.stiffness});
+    if (contact.depth <= 0) continue;
+    stiff.push_back({contact.stencil, contact.normal, 2 * contact.stiffness});
+    if (const double along = friction_that_sticks(contact); along > 0) {
+      correction.sticking.push_back({contact.stencil, std::max(2 * contact.stiffness, along)});
+    } else if (may_stick) {
+      correction.loose.push_back(stiff.back());
+    }
   }
   correction.normals = stiff.size();
   for (const Contact& contact : contacts) {
@@ -24,6 +54,8 @@ void find_stiff_directions(const Model& model, const std::vector<Contact>& conta
     const Vec3 side = n.cross(std::abs(n.y()) < 0.7 ? Vec3::UnitY() : Vec3::UnitX()).normalized();
     stiff.push_back({contact.stencil, side, along});
     stiff.push_back({contact.stencil, n.cross(side), along});
+    if (may_stick && friction_that_sticks(contact) == 0)
+      correction.loose.insert(correction.loose.end(), stiff.end() - 2, stiff.end());
   }
 }
 
@@ -240,10 +272,38 @@ void apply_both_levels(const Model& model, ContactCorrection& c, SolveScratch& s
   if (c.second != nullptr) c.second->add_to(model, r, c.threads, z);
 }
 
+void apply_stuck(const Model& model, ContactCorrection& c, Positions& r, Positions& z) {
+  c.system.clear();
+  const auto scale = [&](const StiffDirection& s, Positions& motion) {
+    const double squared = s.stencil.weights_squared();
+    double a = 0;
+    for (int k = 0; k < s.stencil.free; ++k)
+      a += s.stencil.weight[k] * s.stencil.weight[k] * c.stuck.diagonal(s.stencil.vertex[k]);
+    a /= squared;
+    s.add(-(1 - std::sqrt(a / (a + squared * s.stiffness))) * s.along(motion) / squared, motion);
+  };
+  for (const StiffDirection& s : c.loose) scale(s, r);
+  c.stuck.solve(model, r, z);
+  for (std::size_t i = c.loose.size(); i-- > 0;) scale(c.loose[i], z);
+}
+
 }  // namespace
 
 void begin_corrections(const Model& model, ContactCorrection& c) {
+  c.stuck.clear();
   c.system.begin_step(system_of(model, c), model.parts);
+}
+
+void begin_sticking(const Model& model, const Positions& v, ContactCorrection& c) {
+  c.may_stick = is_cloth_that_lies(model, v);
+}
+
+void choose_sticking_system(const Model& model, const ContactSettings& settings, const Positions& x,
+                            ContactCorrection& c) {
+  constexpr double least_share = 0.5;  // of the contacts that press
+  if (c.stuck.serves() || settings.direction != ContactDirection::low_rank || c.sticking.empty()) return;
+  if (double(c.sticking.size()) < least_share * double(c.normals)) return;
+  if (affordable(model, c.wanted) < c.wanted.size()) c.stuck.make(system_of(model, c), c.sticking, x);
 }
 
 void apply_inverse(const Model& model, const ContactSettings& settings, ContactCorrection& c, SolveScratch& scratch,
@@ -254,6 +314,7 @@ void apply_inverse(const Model& model, const ContactSettings& settings, ContactC
     return apply_both_levels(model, c, scratch, r, z);
   }
   if (settings.direction == ContactDirection::diagonal) return apply_diagonal(model, c, scratch, r, z);
+  if (c.stuck.serves()) return apply_stuck(model, c, r, z);
   std::vector<StiffDirection> tangents;
   if (model.parts.size() > 1) tangents = take_out_tangents(c.normals, affordable(model, c.wanted), c.wanted);
   split(c, affordable(model, c.wanted));
@@ -320,7 +381,7 @@ bool foresee_contacts(const Model& model, const ContactSettings& settings, const
   c.unbent = direction;
   std::vector<StiffDirection> all = c.system.directions();
   all.insert(all.end(), ahead.begin(), ahead.end());
-  if (affordable(model, all) == all.size()) {
+  if (!c.stuck.serves() && affordable(model, all) == all.size()) {
     bend(model, Eigen::VectorXf::Zero(std::ssize(c.system.directions())), ahead, gaps, c, direction);
     return true;
   }
@@ -334,7 +395,7 @@ bool foresee_contacts(const Model& model, const ContactSettings& settings, const
 
 void keep_bow_on_planes(const Model& model, const ContactSettings& settings, const std::vector<Contact>& contacts,
                         const Positions& x, const Positions& direction, ContactCorrection& c, Positions& bow) {
-  if (settings.direction != ContactDirection::low_rank || contacts.empty()) return;
+  if (settings.direction != ContactDirection::low_rank || contacts.empty() || c.stuck.serves()) return;
   const std::vector<StiffDirection>& held = c.system.directions();
   Eigen::VectorXf off(std::ssize(held));
   for (Eigen::Index i = 0; i < off.size(); ++i) off[i] = static_cast<float>(held[i].along(bow));

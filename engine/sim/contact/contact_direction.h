@@ -9,7 +9,9 @@
 //             Each of the others, R, is scaled by itself: H = T (A + K')^-1 T,
 //             T = I - R diag(1 - sqrt(a / (a + k))) R^T.
 // The second of these uses A^-1 + Z D Z^T in place of A^-1 for directions that have a second level
-// (coarse/second_level.h).
+// (coarse/second_level.h). Of cloth that lies, many more contacts stick than the system may have. What sticks is then in
+// the matrix itself (sticking_system.h), for the rest of the step and without a second level: H = T (A + sum k w w^T)^-1
+// T, with R the directions of all other contacts and a the diagonal of this matrix.
 // All of these H are symmetric and positive definite.
 #pragma once
 
@@ -18,6 +20,7 @@
 #include "sim/coarse/second_level.h"
 #include "sim/contact/capacitance.h"
 #include "sim/contact/contact.h"
+#include "sim/contact/sticking_system.h"
 #include "sim/linear/parted_solve.h"
 #include "sim/model/inputs.h"
 #include "sim/model/system_solve.h"
@@ -26,11 +29,15 @@ namespace supple {
 
 // Holds the scratch memory of the corrections; it is empty until a contact occurs.
 struct ContactCorrection {
-  const System* matrix = nullptr;              // called A here: the step's matrix in force; null: the model's A
-  Threads* threads = nullptr;                  // null: the calling thread works alone
-  std::vector<StiffDirection> wanted;          // stiff directions of the contacts in force: normals, then tangents
-  std::size_t normals = 0;                     // how many of them are normals
-  std::vector<StiffDirection> together, rest;  // those that `system` couples, and those scaled by themselves
+  const System* matrix = nullptr;                // called A here: the step's matrix in force; null: the model's A
+  Threads* threads = nullptr;                    // null: the calling thread works alone
+  std::vector<StiffDirection> wanted;            // stiff directions of the contacts in force: normals, then tangents
+  std::size_t normals = 0;                       // how many of them are normals
+  std::vector<StiffDirection> together, rest;    // those that `system` couples, and those scaled by themselves
+  bool may_stick = false;                        // the step begins with cloth that lies, and nothing else
+  std::vector<StickingSystem::Spring> sticking;  // for each contact that sticks, where they may
+  std::vector<StiffDirection> loose;             // the wanted directions of all other contacts there
+  StickingSystem stuck;                          // takes the place of `system` where most contacts stick
   Capacitance system;
   PartedSolve solve;
   FactorPart part;                      // the part of the factor that the system's vertices involve
@@ -54,6 +61,14 @@ void find_stiff_directions(const Model& model, const std::vector<Contact>& conta
 
 // Makes a step independent of earlier ones.
 void begin_corrections(const Model& model, ContactCorrection& correction);
+
+// Says at which velocities a step begins (n x 3) [m/s]: contacts may stick where all parts are cloth that hardly moves.
+void begin_sticking(const Model& model, const Positions& v, ContactCorrection& correction);
+
+// Lets the matrix with what sticks serve the rest of the step where contacts may stick, the small system has no room
+// for all that were found at x, and most of them do stick. To be called after find_stiff_directions().
+void choose_sticking_system(const Model& model, const ContactSettings& settings, const Positions& x,
+                            ContactCorrection& correction);
 
 // Computes z = H r, with H for the directions in correction.wanted. Overwrites r.
 void apply_inverse(const Model& model, const ContactSettings& settings, ContactCorrection& correction,

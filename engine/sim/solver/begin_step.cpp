@@ -1,6 +1,7 @@
 #include "sim/solver/begin_step.h"
 
 #include "base/error.h"
+#include "sim/contact/contact_direction.h"
 #include "sim/solver/first_forces.h"
 #include "sim/solver/matrix_rule.h"
 #include "sim/solver/objective.h"
@@ -51,6 +52,7 @@ void begin_step(const Model& model, const StepInputs& inputs, const State& state
   begin_air(model, inputs, state, w.air);
   begin_seams(model, inputs, w);
   w.start_positions = &state.x;
+  w.contact_energy_at_y.reset();
   w.correction.threads = w.threads;
   w.second_level_serves = false;
   w.correction.second = nullptr;
@@ -63,6 +65,7 @@ void begin_step(const Model& model, const StepInputs& inputs, const State& state
     begin_contacts(model, inputs, state.x, w.y, w.threads, w.contact);
   }
   put_in_force(model, inputs, model, w);
+  if (may_touch(inputs)) begin_sticking(model, state.v, w.correction);
   if (has_colliders(inputs)) find_first_forces(model, inputs, state, w);
   w.current.x = w.y;
   set_targets(model, inputs, w);

@@ -54,9 +54,12 @@ namespace {
 // what is hit, and equation 12 counts from y. The energy of the elements at y is left out.
 double below_prediction(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
   if (!may_touch(inputs) || w.report.failed) return 0;
-  w.trial.x.topRows(model.free) = w.y.topRows(model.free);
-  find_contacts_of(model, inputs, w, w.trial);
-  return contact_energy(w.trial.contacts, w.trial.x) - w.current.g;
+  if (!w.contact_energy_at_y) {
+    w.trial.x.topRows(model.free) = w.y.topRows(model.free);
+    find_contacts_of(model, inputs, w, w.trial);
+    w.contact_energy_at_y = contact_energy(w.trial.contacts, w.trial.x);
+  }
+  return *w.contact_energy_at_y - w.current.g;
 }
 
 }  // namespace

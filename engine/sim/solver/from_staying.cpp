@@ -53,6 +53,7 @@ std::optional<double> gain_of_staying(const StepContext& c) {
   const double friction_reached = friction_energy(w.current.contacts, w.current.x);
   const double reached = w.current.g - friction_reached;
   set_staying(c);
+  if (w.trial.x == w.current.x) return std::nullopt;  // it stays as it is
   if (reached <= inertial_energy(c.model, w, w.trial.x) && !energy_may_be_negative(c)) return std::nullopt;
   find_contacts_of(c.model, c.inputs, w, w.trial);
   const double friction_staying = friction_energy(w.trial.contacts, w.trial.x);

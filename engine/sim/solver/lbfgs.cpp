@@ -221,6 +221,8 @@ void SystemInverse::apply(const Model& model, const StepInputs& inputs, OpenWork
   if (w.turned_hessian_serves && w.current.contacts.empty()) return w.turned_hessian.solve(model, r, z);
   if (has_second_level_ && iterations_ != w.report.iterations) w.second_level.move_to(w.current.x);
   iterations_ = w.report.iterations;
+  choose_sticking_system(model, inputs.solver.contact, w.current.x, w.correction);
+  if (w.correction.stuck.serves()) has_second_level_ = false;
   w.second_level_serves = has_second_level_;
   w.correction.second = has_second_level_ ? &w.second_level : nullptr;
   const auto solve = [&](Positions& right, Positions& solution) {

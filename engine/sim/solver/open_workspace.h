@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "base/threads.h"
 #include "sim/air/air_forces.h"
@@ -37,6 +38,8 @@ struct OpenWorkspace {
   Positions target;  // targets of soft handles, by free vertex, n_free x 3 [m]; empty without soft handles
   // How far apart the places that seams join are meant to be where forces are evaluated, pairs x 3 [m].
   Positions seam_gaps;
+
+  std::optional<double> contact_energy_at_y;  // once a step has asked for it [J]
 
   // The solver is at the current iterate, and tries the trial iterate.
   Iterate current, trial;

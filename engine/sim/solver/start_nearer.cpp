@@ -97,6 +97,7 @@ void start_where_it_was(StepContext& c) {
   };
   set_trial_by_parts(
       c, is_between_vertices, [](const Part&) { return false; }, move);
+  if (w.trial.x == w.current.x) return;  // what did not move before the step starts there already
   if (inertial_energy(c.model, w, w.trial.x) < far_better * w.current.g || energy_may_be_negative(c))
     start_from_trial_below(far_better, c);
 }

@@ -1,0 +1,112 @@
+// Tests directions of cloth whose contacts stick: against dense matrices, for symmetry, and when they serve.
+#include "sim/contact/sticking_system.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "support/contact_scene.h"
+
+namespace supple {
+namespace sticking_system_test {
+
+using test::shaken;
+using test::shape_of;
+using test::stacked;
+
+// A sheet with its contacts at the first iterate of a step. Its vertices lie a little in the ground.
+struct Lying : test::ContactScene {
+  explicit Lying(const Eigen::Vector2i& cells, double speed = 0, double friction = 0.4)
+      : ContactScene(test::sheet({0.4, 0.3}, cells, {Woven{900, 700, 20, 0.05, 1.1}, 1e-4}),
+                     {{"ground", shape_of(HalfSpace{Vec3::UnitZ(), 0}), 0, friction}}, Vec3(0, 0, -1e-5)) {
+    inputs.gravity = Vec3(0, 0, -9.81);
+    state.v.col(0).setConstant(speed);
+    w.prepare(model, inputs.solver);
+    begin_step(model, inputs, state, w);
+    w.current.x = state.x + model.time_step * state.v;
+    find_contacts_of(model, inputs, w, w.current);
+    find_stiff_directions(model, w.current.contacts, w.current.x, w.correction);
+  }
+  void choose() { choose_sticking_system(model, inputs.solver.contact, w.current.x, w.correction); }
+  Positions applied(Positions r) {
+    Positions z(model.free, 3);
+    apply_inverse(model, inputs.solver.contact, w.correction, w.solve_scratch, r, z);
+    return z;
+  }
+};
+
+TEST(StickingSystem, SolvesTheMatrixWithASpringForEachContact) {
+  Lying scene({20, 15});
+  scene.choose();
+  const ContactCorrection& c = scene.w.correction;
+  ASSERT_TRUE(c.stuck.serves());
+  ASSERT_TRUE(c.loose.empty());
+  ASSERT_EQ(c.sticking.size(), std::size_t(scene.model.free));
+  Eigen::MatrixXd matrix = test::dense(scene.model.matrix);
+  for (const StickingSystem::Spring& spring : c.sticking) {
+    const std::int32_t v = spring.stencil.vertex[0];
+    EXPECT_GE(spring.stiffness, 2 * c.wanted[0].stiffness / 2);
+    matrix(v, v) += spring.stiffness;
+    EXPECT_NEAR(c.stuck.diagonal(v), matrix(v, v), 1e-12 * matrix(v, v));
+  }
+  const Positions r = shaken(Positions::Zero(scene.model.free, 3), 1, 2);
+  const Eigen::MatrixXd wanted = matrix.llt().solve(Eigen::MatrixXd(r));
+  EXPECT_LT((scene.applied(r) - wanted).norm(), 1e-4 * wanted.norm());
+}
+
+// Some contacts are taken for ones that slide, which are scaled by themselves.
+TEST(StickingSystem, LeavesDirectionsSymmetricAndPositive) {
+  Lying scene({20, 15});
+  ContactCorrection& c = scene.w.correction;
+  for (std::size_t i = 0; i < c.normals; i += 3) c.loose.push_back(c.wanted[i]);
+  std::erase_if(c.sticking, [](const StickingSystem::Spring& s) { return s.stencil.vertex[0] % 3 == 0; });
+  scene.choose();
+  ASSERT_TRUE(c.stuck.serves());
+  const Positions a = shaken(Positions::Zero(scene.model.free, 3), 1, 2);
+  const Positions b = shaken(Positions::Zero(scene.model.free, 3), 1, 3);
+  const Positions of_a = scene.applied(a), of_b = scene.applied(b);
+  const double ab = stacked(of_a).dot(stacked(b)), ba = stacked(a).dot(stacked(of_b));
+  EXPECT_NEAR(ab, ba, 1e-4 * std::sqrt(stacked(of_a).dot(stacked(a)) * stacked(of_b).dot(stacked(b))));
+  EXPECT_GT(stacked(of_a).dot(stacked(a)), 0);
+}
+
+TEST(StickingSystem, ServesWhereTheSmallSystemHasNoRoomAndMostContactsStick) {
+  const auto serves = [](Lying scene) {
+    scene.choose();
+    return scene.w.correction.stuck.serves();
+  };
+  EXPECT_TRUE(serves(Lying({20, 15})));
+  EXPECT_FALSE(serves(Lying({8, 6}))) << "the small system has room";
+  EXPECT_FALSE(serves(Lying({20, 15}, 0.5))) << "it slides";
+  EXPECT_FALSE(serves(Lying({20, 15}, 0, 0))) << "nothing rubs";
+}
+
+TEST(StickingSystem, ServesOneStep) {
+  Lying scene({20, 15});
+  scene.choose();
+  begin_step(scene.model, scene.inputs, scene.state, scene.w);
+  EXPECT_FALSE(scene.w.correction.stuck.serves());
+}
+
+// What is kept from step to step must be what would be made.
+TEST(StickingSystem, IsMadeAnewWhereSomethingHasMoved) {
+  Lying scene({20, 15});
+  scene.choose();
+  const Positions r = shaken(Positions::Zero(scene.model.free, 3), 1, 2);
+  const Positions before = scene.applied(r);
+  ContactCorrection& c = scene.w.correction;
+  c.sticking.resize(c.sticking.size() - 40);
+  for (const bool kept : {false, true}) {
+    c.stuck.clear();
+    scene.choose();
+    StickingSystem fresh;
+    fresh.make(scene.model, c.sticking, scene.w.current.x);
+    Positions z(scene.model.free, 3);
+    fresh.solve(scene.model, r, z);
+    EXPECT_EQ(z, scene.applied(r)) << kept;
+    EXPECT_NE(z, before);
+  }
+}
+
+}  // namespace sticking_system_test
+}  // namespace supple
