@@ -9,10 +9,10 @@
 //             Each of the others, R, is scaled by itself: H = T (A + K')^-1 T,
 //             T = I - R diag(1 - sqrt(a / (a + k))) R^T.
 // The second of these uses A^-1 + Z D Z^T in place of A^-1 for directions that have a second level
-// (coarse/second_level.h). Of cloth that lies, many more contacts stick than the system may have. What sticks is then in
-// the matrix itself (sticking_system.h), for the rest of the step and without a second level: H = T (A + sum k w w^T)^-1
-// T, with R the directions of all other contacts and a the diagonal of this matrix.
-// All of these H are symmetric and positive definite.
+// (coarse/second_level.h). Of cloth that lies, many more contacts stick than the system may have. What sticks is then
+// in the matrix itself (sticking_system.h), for the rest of the step and without a second level: H = T (A + sum k w
+// w^T)^-1 T, with R the directions of all other contacts and a the diagonal of this matrix. All of these H are
+// symmetric and positive definite.
 #pragma once
 
 #include <vector>
