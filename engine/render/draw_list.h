@@ -119,6 +119,7 @@ struct Camera {
   // How far the picture is moved on its plane, to the right and up, as tangents of angles. A picture from a place on
   // the lens beside its middle is moved so that what is in focus stays where it is.
   Eigen::Vector2d shift = Eigen::Vector2d::Zero();
+  bool operator==(const Camera&) const = default;
 };
 
 struct Stage {

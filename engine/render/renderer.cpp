@@ -170,6 +170,7 @@ void Renderer::prepare_field() {
 
 // Takes over what a list changes of the stage.
 void Renderer::take_changes(const DrawList& list) {
+  if (list.colors || !list.renewed.empty()) last_.reset();
   if (list.colors) stage_.colors = *list.colors;
   for (const auto& [m, mesh] : list.renewed) stage_.meshes[m] = mesh;
   if (!list.renewed.empty()) {
@@ -226,14 +227,29 @@ void Renderer::shade(const StageLight& light) {
 Image Renderer::draw(const DrawList& list) {
   take_changes(list);
   Image image;
-  if (list.exposure) {
-    image = draw_exposed(list);
-  } else {
-    take_samples(stage_.samples);
-    image = draw_moment(list, cover_.at(stage_.meshes, list), Motion::moved);
-  }
+  image = list.exposure ? draw_exposed(list) : draw_sharp(list);
   DrawZone zone(gl_, "captions");
   draw_overlays(list, image);
+  return image;
+}
+
+// Draws a picture of an instant, without words. Where nothing has moved since the picture before, that is the picture;
+// where the camera alone has moved, the bodies' buffers and shadow maps stay.
+Image Renderer::draw_sharp(const DrawList& list) {
+  take_samples(stage_.samples);
+  const StageCover::Frame cover = cover_.at(stage_.meshes, list);
+  const bool same = last_ && cover == last_->cover && list.positions == last_->list.positions &&
+                    list.field == last_->list.field && list.hollow == last_->list.hollow;
+  if (same && list.camera == last_->list.camera && list.marks == last_->list.marks) return last_->image;
+  Image image = draw_moment(list, cover, same ? Motion::same : Motion::moved);
+  if (!last_) last_.emplace();
+  last_->list.camera = list.camera;
+  last_->list.positions = list.positions;
+  last_->list.field = list.field;
+  last_->list.hollow = list.hollow;
+  last_->list.marks = list.marks;
+  last_->cover = cover;
+  last_->image = image;
   return image;
 }
 
@@ -275,6 +291,7 @@ Image Renderer::draw_moment(const DrawList& list, const StageCover::Frame& cover
 // in another place in each; ghosts are written into every second sample and need two. What lights and shadows cover is
 // that of the frame, so that the pictures differ in what moves alone.
 Image Renderer::draw_exposed(const DrawList& list) {
+  last_.reset();
   take_samples(std::ranges::any_of(stage_.meshes, &DrawMesh::ghost) ? 2 : 1);
   const StageCover::Frame cover = cover_.at(stage_.meshes, list);
   const bool moves = list.exposure->open > 0;

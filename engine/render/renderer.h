@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "render/captions.h"
@@ -48,8 +49,14 @@ class Renderer {
   const std::string& version() const { return version_; }  // GL_VERSION
 
  private:
-  // Tells whether bodies stand where they stood in the picture before, which is of the same frame.
+  // Tells whether bodies and what lights cover are those of the picture before.
   enum class Motion { moved, same };
+  // Describes what the last picture without exposure showed, and holds it without words.
+  struct Moment {
+    DrawList list;  // without what changes the stage, and without words
+    StageCover::Frame cover;
+    Image image;
+  };
 
   void make_targets();
   void make_shading_program();
@@ -58,6 +65,7 @@ class Renderer {
   void make_surfaces();
   void take_samples(int samples);
   void take_changes(const DrawList& list);
+  Image draw_sharp(const DrawList& list);
   Image draw_moment(const DrawList& list, const StageCover::Frame& cover, Motion motion);
   Image draw_exposed(const DrawList& list);
   void find_visible(const Eigen::Matrix4f& view, const StageLight& light, const DrawList& list);
@@ -94,6 +102,7 @@ class Renderer {
   std::unique_ptr<TileBuffer> tile_buffer_;
   GLuint color_buffer_ = 0, color_texture_ = 0;  // colours of the field; none without a field
   Sticker legend_;
+  std::optional<Moment> last_;        // nothing where the stage has changed since, or the last picture was exposed
   std::vector<std::uint8_t> pixels_;  // scratch: the picture as it is read back
 };
 

@@ -22,6 +22,7 @@ class StageCover {
     double shadow_radius;
     Vec3 shade_center;    // of the square of the ground in which contact shade is computed
     double shade_extent;  // edge of the square
+    bool operator==(const Frame&) const = default;
   };
   Frame at(const std::vector<DrawMesh>& meshes, const DrawList& list) const;
 
