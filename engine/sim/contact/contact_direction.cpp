@@ -272,7 +272,8 @@ void apply_both_levels(const Model& model, ContactCorrection& c, SolveScratch& s
   if (c.second != nullptr) c.second->add_to(model, r, c.threads, z);
 }
 
-void apply_stuck(const Model& model, ContactCorrection& c, Positions& r, Positions& z) {
+// Computes z = H r with what sticks in the matrix. Overwrites r.
+void apply_stuck(ContactCorrection& c, Positions& r, Positions& z) {
   c.system.clear();
   const auto scale = [&](const StiffDirection& s, Positions& motion) {
     const double squared = s.stencil.weights_squared();
@@ -283,7 +284,7 @@ void apply_stuck(const Model& model, ContactCorrection& c, Positions& r, Positio
     s.add(-(1 - std::sqrt(a / (a + squared * s.stiffness))) * s.along(motion) / squared, motion);
   };
   for (const StiffDirection& s : c.loose) scale(s, r);
-  c.stuck.solve(model, r, z);
+  c.stuck.solve(r, z);
   for (std::size_t i = c.loose.size(); i-- > 0;) scale(c.loose[i], z);
 }
 
@@ -301,9 +302,46 @@ void begin_sticking(const Model& model, const Positions& v, ContactCorrection& c
 void choose_sticking_system(const Model& model, const ContactSettings& settings, const Positions& x,
                             ContactCorrection& c) {
   constexpr double least_share = 0.5;  // of the contacts that press
-  if (c.stuck.serves() || settings.direction != ContactDirection::low_rank || c.sticking.empty()) return;
-  if (double(c.sticking.size()) < least_share * double(c.normals)) return;
-  if (affordable(model, c.wanted) < c.wanted.size()) c.stuck.make(system_of(model, c), c.sticking, x);
+  if (settings.direction != ContactDirection::low_rank) return;
+  if (!c.stuck.serves()) {
+    if (c.sticking.empty() || double(c.sticking.size()) < least_share * double(c.normals)) return;
+    if (affordable(model, c.wanted) < c.wanted.size()) c.stuck.make(system_of(model, c), c.sticking, x);
+    return;
+  }
+  // Contacts that began to stick after the matrix was made are scaled by themselves along all axes.
+  for (const StickingSystem::Spring& spring : c.sticking) {
+    if (c.stuck.has(spring.stencil)) continue;
+    for (const Vec3& axis : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())})
+      c.loose.push_back({spring.stencil, axis, spring.stiffness});
+  }
+}
+
+bool solve_with_all_contacts(const Model& model, ContactCorrection& c, const Positions& r, Positions& z) {
+  constexpr int most_iterations = 60;
+  constexpr double small = 1e-4;  // of r^T H r
+  const auto product = [](const Positions& a, const Positions& b) { return (a.array() * b.array()).sum(); };
+  const Eigen::SparseMatrix<double>& matrix = system_of(model, c).matrix;
+  Positions left = r, right(r.rows(), 3), ahead(r.rows(), 3), pushed(r.rows(), 3);
+  const auto precondition = [&] {
+    right = left;
+    apply_stuck(c, right, ahead);
+    return product(left, ahead);
+  };
+  z.setZero(r.rows(), 3);
+  const double first = precondition();
+  double before = first;
+  Positions direction = ahead;
+  for (int i = 0; i < most_iterations && before > small * first; ++i) {
+    pushed = matrix.selfadjointView<Eigen::Lower>() * direction;
+    for (const StiffDirection& s : c.wanted) s.add(s.stiffness * s.along(direction), pushed);
+    const double length = before / product(direction, pushed);
+    z += length * direction;
+    left -= length * pushed;
+    const double now = precondition();
+    direction = ahead + now / before * direction;
+    before = now;
+  }
+  return before <= small * first;
 }
 
 void apply_inverse(const Model& model, const ContactSettings& settings, ContactCorrection& c, SolveScratch& scratch,
@@ -314,7 +352,7 @@ void apply_inverse(const Model& model, const ContactSettings& settings, ContactC
     return apply_both_levels(model, c, scratch, r, z);
   }
   if (settings.direction == ContactDirection::diagonal) return apply_diagonal(model, c, scratch, r, z);
-  if (c.stuck.serves()) return apply_stuck(model, c, r, z);
+  if (c.stuck.serves()) return apply_stuck(c, r, z);
   std::vector<StiffDirection> tangents;
   if (model.parts.size() > 1) tangents = take_out_tangents(c.normals, affordable(model, c.wanted), c.wanted);
   split(c, affordable(model, c.wanted));
@@ -395,7 +433,7 @@ bool foresee_contacts(const Model& model, const ContactSettings& settings, const
 
 void keep_bow_on_planes(const Model& model, const ContactSettings& settings, const std::vector<Contact>& contacts,
                         const Positions& x, const Positions& direction, ContactCorrection& c, Positions& bow) {
-  if (settings.direction != ContactDirection::low_rank || contacts.empty() || c.stuck.serves()) return;
+  if (settings.direction != ContactDirection::low_rank || contacts.empty()) return;
   const std::vector<StiffDirection>& held = c.system.directions();
   Eigen::VectorXf off(std::ssize(held));
   for (Eigen::Index i = 0; i < off.size(); ++i) off[i] = static_cast<float>(held[i].along(bow));

@@ -4,7 +4,6 @@
 
 #include "base/error.h"
 #include "sim/linear/place_order.h"
-#include "sim/model/system_solve.h"
 
 namespace supple {
 namespace {
@@ -23,6 +22,9 @@ void StickingSystem::make(const System& system, const std::vector<Spring>& sprin
     system_ = system.id;
     at_ = x;
     springs_ = springs;
+    joined_.clear();
+    for (const Spring& spring : springs) joined_.push_back(spring.stencil.vertex);
+    std::ranges::sort(joined_);
     is_factored_ = factorize(system);
   }
   serves_ = is_factored_;
@@ -65,7 +67,11 @@ bool StickingSystem::factorize(const System& system) {
   }
 }
 
-void StickingSystem::solve(const Model& model, const Positions& r, Positions& z) {
+bool StickingSystem::has(const ContactStencil& stencil) const {
+  return std::ranges::binary_search(joined_, stencil.vertex);
+}
+
+void StickingSystem::solve(const Positions& r, Positions& z) {
   const auto count = static_cast<Eigen::Index>(order_.size());
   right_.resize(count, 3);
   solution_.resize(count, 3);
@@ -73,9 +79,6 @@ void StickingSystem::solve(const Model& model, const Positions& r, Positions& z)
   for (Eigen::Index v = 0; v < count; ++v) right_.row(place_[v]) = r.row(v);
   factor_.solve(right_.data(), solution_.data(), scratch_);
   for (Eigen::Index v = 0; v < count; ++v) z.row(v) = solution_.row(place_[v]);
-  forces_ = r;
-  for (const Spring& spring : springs_) spring.stencil.spread(-spring.stiffness * spring.stencil.of_free(z), forces_);
-  restore_translation(model, forces_, z);
 }
 
 }  // namespace supple

@@ -1,9 +1,11 @@
-// Solves with A + sum k w w^T over the contacts that stick, w their weights. Where friction is about as stiff as the
-// normal, a contact is a spring that is as stiff in all directions, and fits into a matrix that is the same for x, y
-// and z. It is factored once in a step, for cloth in layers and cloth that lies: there are more contacts than the small
-// system of capacitance.h may have, and most of them stick. Directions stay symmetric and positive definite.
+// Solves with A + sum k w w^T over the contacts that stick, w their weights. A contact that sticks is a spring against
+// motions in all directions, and fits into a matrix that is the same for x, y and z, where k is the larger of its two
+// stiffnesses: across its plane, and along it, that of friction. The matrix is factored once in a step, for cloth in
+// layers and cloth that lies: there are more contacts than the small system of capacitance.h may have, and most of them
+// stick. It stays symmetric and positive definite.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "sim/contact/contact.h"
@@ -14,7 +16,7 @@ namespace supple {
 
 class StickingSystem {
  public:
-  // Describes a contact that sticks: k stands for its stiffness in all directions [N/m].
+  // Describes a contact that sticks, with k [N/m].
   struct Spring {
     ContactStencil stencil;
     double stiffness;
@@ -29,10 +31,11 @@ class StickingSystem {
   // A. x: positions, whose places give the order of elimination. Nothing serves where the matrix has no factor.
   void make(const System& system, const std::vector<Spring>& springs, const Positions& x);
 
-  // Computes the solution z for the forces r, both n_free x 3 [m], [N]. Parts that nothing holds move as a whole
-  // exactly as the forces and springs of the last make() say.
-  void solve(const Model& model, const Positions& r, Positions& z);
+  // Computes the solution z for the forces r, both n_free x 3 [m], [N].
+  void solve(const Positions& r, Positions& z);
 
+  // Tells whether the matrix has a spring between the vertices of a contact.
+  bool has(const ContactStencil& stencil) const;
   // Returns an entry of the diagonal [N/m].
   double diagonal(std::int32_t vertex) const { return diagonal_[vertex]; }
 
@@ -46,13 +49,14 @@ class StickingSystem {
   Positions at_;
   std::vector<Spring> springs_;
   bool is_factored_ = false;
-  std::vector<double> diagonal_;     // by vertex [N/m]
-  std::vector<std::int32_t> order_;  // by place in the order of elimination
-  std::vector<std::int32_t> place_;  // by vertex
+  std::vector<std::array<std::int32_t, 4>> joined_;  // the vertices of each spring, sorted
+  std::vector<double> diagonal_;                     // by vertex [N/m]
+  std::vector<std::int32_t> order_;                  // by place in the order of elimination
+  std::vector<std::int32_t> place_;                  // by vertex
   Eigen::SparseMatrix<double> sum_, ordered_;
   CholeskyFactor factor_;
   AlignedVector<double> scratch_;
-  Positions right_, solution_, forces_;  // n_free x 3; the first two in the order of elimination
+  Positions right_, solution_;  // n_free x 3, in the order of elimination
 };
 
 }  // namespace supple

@@ -1,5 +1,5 @@
 // Orders the unknowns of a sparse matrix for elimination by where they lie: nested dissection whose cuts are planes. It
-// takes a twentieth of the time of an order by the pattern alone (fill_reducing_order(), cholesky.h) and serves
+// takes a small part of the time of an order by the pattern alone (fill_reducing_order(), cholesky.h) and serves
 // matrices whose pattern changes from step to step; fill is larger.
 #pragma once
 

@@ -233,10 +233,27 @@ constexpr double small_error = 0.03;  // a film says that a step is unsolved fro
 
 bool is_still(const Model& model, const StepInputs& inputs, const Positions& q, double gained, OpenWorkspace& w) {
   const SolverSettings& solver = inputs.solver;
+  StepReport& report = w.report;
   if (solver.still <= 0 || solver.levels < 2) return false;
-  if (way_in_sizes(model, w.direction) * times_ahead(w.report) >= solver.still) return false;
-  report_motion_estimates(model, inputs, q, w);
-  return w.report.motion_ahead < small_error && error_at_end(model, inputs, w, gained) < small_error;
+  const auto is_short = [&] { return way_in_sizes(model, w.direction) * times_ahead(report) < solver.still; };
+  const auto leaves_little = [&] {
+    report_motion_estimates(model, inputs, q, w);
+    return report.motion_ahead < small_error && error_at_end(model, inputs, w, gained) < small_error;
+  };
+  if (!is_short()) return false;
+  if (!w.correction.stuck.serves()) return leaves_little();
+  Positions way;
+  if (!solve_with_all_contacts(model, w.correction, w.current.gradient, way)) return false;
+  const double decrement = report.decrement, left = report.remaining_estimate;
+  report.decrement = 0.5 * (w.current.gradient.array() * way.array()).sum();
+  report.remaining_estimate = left * (report.decrement / decrement);
+  way = -way;
+  w.direction.swap(way);
+  if (is_short() && leaves_little()) return true;
+  w.direction.swap(way);
+  report.decrement = decrement;
+  report.remaining_estimate = left;
+  return false;
 }
 
 bool is_far(const Model& model, const StepInputs& inputs, const Positions& q, bool has_gone_on, OpenWorkspace& w) {
