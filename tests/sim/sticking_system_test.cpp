@@ -134,7 +134,7 @@ TEST(StickingSystem, ScalesContactsThatBeginToStickLater) {
 
 // The way that is left is that of the true stiffness of all contacts.
 TEST(StickingSystem, IsCorrectedToTheSystemOfAllContacts) {
-  Lying scene({20, 15}, 1e-4);
+  Lying scene({20, 15}, 3e-3);  // slips so far that friction is soft beside the normals
   scene.choose();
   const ContactCorrection& c = scene.w.correction;
   ASSERT_TRUE(c.stuck.serves());
