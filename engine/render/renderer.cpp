@@ -241,16 +241,14 @@ Image Renderer::draw_sharp(const DrawList& list) {
   const bool same = last_ && cover == last_->cover && list.positions == last_->list.positions &&
                     list.field == last_->list.field && list.hollow == last_->list.hollow;
   if (same && list.camera == last_->list.camera && list.marks == last_->list.marks) return last_->image;
-  Image image = draw_moment(list, cover, same ? Motion::same : Motion::moved);
-  if (!last_) last_.emplace();
-  last_->list.camera = list.camera;
-  last_->list.positions = list.positions;
-  last_->list.field = list.field;
-  last_->list.hollow = list.hollow;
-  last_->list.marks = list.marks;
-  last_->cover = cover;
-  last_->image = image;
-  return image;
+  last_.reset();
+  Moment now = {{}, cover, draw_moment(list, cover, same ? Motion::same : Motion::moved)};
+  now.list.camera = list.camera;
+  now.list.positions = list.positions;
+  now.list.field = list.field;
+  now.list.hollow = list.hollow;
+  now.list.marks = list.marks;
+  return last_.emplace(std::move(now)).image;
 }
 
 // Draws what is seen in an instant, without words.

@@ -77,14 +77,22 @@ TEST(StillPictures, TakeNewColoursAndMeshes) {
   EXPECT_EQ(renderer.draw(scenery.list).rgb, renewed) << "the mesh stays";
 }
 
+// What moved while the shutter was open stands elsewhere in the last of its pictures.
 TEST(StillPictures, AreNotThoseOfAnExposure) {
-  Scenery scenery;
-  Renderer renderer(scenery.stage, GlChoice::osmesa, shaders);
-  const std::vector<std::uint8_t> sharp = renderer.draw(scenery.list).rgb;
-  DrawList open = scenery.list;
+  const Scenery scenery;
+  DrawList open = scenery.list, seen_from_beside = scenery.list;
   open.exposure.emplace();
-  renderer.draw(open);
+  open.exposure->open = 0.5;
+  open.exposure->before = scenery.list.positions;
+  open.exposure->camera_before = scenery.list.camera;
+  for (float& place : open.exposure->before.front()) place += 0.1f;
+  seen_from_beside.camera.eye.x() += 0.2;
+  const std::vector<std::uint8_t> sharp = scenery.drawn_anew(scenery.list);
+  const std::vector<std::uint8_t> beside = scenery.drawn_anew(seen_from_beside);
+  Renderer renderer(scenery.stage, GlChoice::osmesa, shaders);
   EXPECT_EQ(renderer.draw(scenery.list).rgb, sharp);
+  renderer.draw(open);
+  EXPECT_EQ(renderer.draw(seen_from_beside).rgb, beside);
 }
 
 }  // namespace still_pictures_test

@@ -341,7 +341,7 @@ bool solve_with_all_contacts(const Model& model, ContactCorrection& c, const Pos
     direction = ahead + now / before * direction;
     before = now;
   }
-  return before <= small * first;
+  return before >= 0 && before <= small * first;
 }
 
 void apply_inverse(const Model& model, const ContactSettings& settings, ContactCorrection& c, SolveScratch& scratch,

@@ -70,9 +70,9 @@ void begin_sticking(const Model& model, const Positions& v, ContactCorrection& c
 void choose_sticking_system(const Model& model, const ContactSettings& settings, const Positions& x,
                             ContactCorrection& correction);
 
-// Computes z = (A + K)^-1 r, with K of all directions in correction.wanted, where the matrix with what sticks serves:
-// it is too stiff along planes, and tells too little of a slow slide. By conjugate gradients, preconditioned by H, to a
-// hundredth of the norm of r. Returns false where they do not come so far.
+// Computes z = (A + K)^-1 r, with K of all directions in correction.wanted, where the matrix with what sticks serves: it
+// is too stiff along planes, and tells too little of a slow slide. By conjugate gradients, preconditioned by H, until
+// r^T H r of what is left is a ten-thousandth of that of r. Returns false where they do not come so far.
 bool solve_with_all_contacts(const Model& model, ContactCorrection& correction, const Positions& r, Positions& z);
 
 // Computes z = H r, with H for the directions in correction.wanted. Overwrites r.

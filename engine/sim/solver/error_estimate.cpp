@@ -240,8 +240,8 @@ bool is_still(const Model& model, const StepInputs& inputs, const Positions& q, 
     report_motion_estimates(model, inputs, q, w);
     return report.motion_ahead < small_error && error_at_end(model, inputs, w, gained) < small_error;
   };
-  if (!is_short()) return false;
-  if (!w.correction.stuck.serves()) return leaves_little();
+  if (!is_short() || !leaves_little()) return false;
+  if (!w.correction.stuck.serves()) return true;
   Positions way;
   if (!solve_with_all_contacts(model, w.correction, w.current.gradient, way)) return false;
   const double decrement = report.decrement, left = report.remaining_estimate;
