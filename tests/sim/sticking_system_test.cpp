@@ -166,6 +166,23 @@ TEST(StickingSystem, LetsClothSlideThatLies) {
   EXPECT_NEAR(scene.center().x() - from, wanted, 0.15 * wanted);
 }
 
+// The first step of a slide goes a millionth of a metre or two. Directions of the matrix with what sticks see a tenth
+// of it; what is left must be shorter than a millionth of the sheet's size.
+TEST(StickingSystem, SeesTheSlowestSlideAsAllIterationsDo) {
+  double way[2];
+  for (const bool all : {false, true}) {
+    Lying scene({20, 15}, 0, 0.3);
+    scene.inputs.gravity = 9.81 * Vec3(std::sin(std::atan(0.5)), 0, -std::cos(std::atan(0.5)));
+    scene.inputs.solver.still = all ? 0 : 1e-6;
+    const double from = scene.center().x();
+    scene.step();
+    EXPECT_TRUE(scene.w.correction.stuck.serves());
+    way[all] = scene.center().x() - from;
+  }
+  EXPECT_LT(std::abs(way[0] - way[1]), 1e-6 * 0.5) << way[0] << " " << way[1];
+  EXPECT_GT(way[1], 1e-6);
+}
+
 // A slow slide is braked, as steps that make all iterations brake it.
 TEST(StickingSystem, BrakesSlowClothAsAllIterationsDo) {
   double way[2];
