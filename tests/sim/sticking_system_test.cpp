@@ -47,7 +47,7 @@ TEST(StickingSystem, SolvesTheMatrixWithASpringForEachContact) {
     const std::int32_t v = spring.stencil.vertex[0];
     EXPECT_GE(spring.stiffness, c.wanted[v].stiffness * (1 - 1e-12));
     matrix(v, v) += spring.stiffness;
-    EXPECT_NEAR(c.stuck.diagonal(v), matrix(v, v), 1e-12 * matrix(v, v));
+    EXPECT_NEAR(c.stuck.diagonal()[v], matrix(v, v), 1e-12 * matrix(v, v));
   }
   const Positions r = shaken(Positions::Zero(scene.model.free, 3), 1, 2);
   const Eigen::MatrixXd wanted = matrix.llt().solve(Eigen::MatrixXd(r));
@@ -153,7 +153,7 @@ TEST(StickingSystem, IsCorrectedToTheSystemOfAllContacts) {
   EXPECT_GT((stacked(scene.applied(r)) - wanted).norm(), 0.1 * wanted.norm());
 }
 
-// Where gravity leads along the ground more steeply than friction holds, cloth that lies must begin to slide.
+// Cloth that lies must begin to slide when gravity leads it along the ground more steeply than friction holds.
 TEST(StickingSystem, LetsClothSlideThatLies) {
   constexpr double friction = 0.3, slope = 0.5, seconds = 0.5;  // slope: the tangent of the angle
   Lying scene({20, 15}, 0, friction);

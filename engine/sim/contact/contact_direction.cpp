@@ -173,26 +173,26 @@ FactorPart part_of(const System& system, const std::vector<StiffDirection>& dire
   return paths_to_root(system.factor, vertices);
 }
 
-// Returns the entry of A for the motion of a point along n / |n|: the mean of the diagonal, by the squared weights.
-double diagonal_at(const System& system, const ContactStencil& stencil) {
-  if (stencil.is_vertex()) return system.diagonal[stencil.vertex[0]];
+// Returns the entry of a matrix with this diagonal for the motion of a point along n / |n|: the mean of the diagonal,
+// by the squared weights.
+double diagonal_at(const std::vector<double>& diagonal, const ContactStencil& stencil) {
+  if (stencil.is_vertex()) return diagonal[stencil.vertex[0]];
   double sum = 0;
-  for (int k = 0; k < stencil.free; ++k)
-    sum += stencil.weight[k] * stencil.weight[k] * system.diagonal[stencil.vertex[k]];
+  for (int k = 0; k < stencil.free; ++k) sum += stencil.weight[k] * stencil.weight[k] * diagonal[stencil.vertex[k]];
   return sum / stencil.weights_squared();
 }
 
 // Returns the share of its motion along a direction of the rest that a point keeps, sqrt(a / (a + k)).
-double share(const System& system, const StiffDirection& s) {
-  const double a = diagonal_at(system, s.stencil);
+double share(const std::vector<double>& diagonal, const StiffDirection& s) {
+  const double a = diagonal_at(diagonal, s.stencil);
   return std::sqrt(a / (a + s.stencil.weights_squared() * s.stiffness));
 }
 
 // Scales a motion by the factor of T that belongs to one direction of the rest. When a vertex has several directions
 // that are not at right angles, their factors are applied one after the other, and in the opposite order on the way
 // back.
-void scale_rest(const System& system, const StiffDirection& s, Positions& r) {
-  s.add(-(1 - share(system, s)) * s.along(r) / s.stencil.weights_squared(), r);
+void scale_rest(const std::vector<double>& diagonal, const StiffDirection& s, Positions& r) {
+  s.add(-(1 - share(diagonal, s)) * s.along(r) / s.stencil.weights_squared(), r);
 }
 
 // Computes z = H r with H = P A^-1 P + N diag(1 / (a + k)) N^T, for n of unit length.
@@ -203,7 +203,7 @@ void apply_diagonal(const Model& model, ContactCorrection& c, SolveScratch& scra
     const double part = s.along(r), squared = s.stencil.weights_squared();
     s.add(-part / squared, r);
     c.answer[static_cast<Eigen::Index>(i)] =
-        static_cast<float>(part / (diagonal_at(system_of(model, c), s.stencil) + squared * s.stiffness));
+        static_cast<float>(part / (diagonal_at(system_of(model, c).diagonal, s.stencil) + squared * s.stiffness));
   }
   solve_system(model, system_of(model, c), r, z, scratch);
   for (std::size_t i = c.wanted.size(); i-- > 0;) {
@@ -275,17 +275,9 @@ void apply_both_levels(const Model& model, ContactCorrection& c, SolveScratch& s
 // Computes z = H r with what sticks in the matrix. Overwrites r.
 void apply_stuck(ContactCorrection& c, Positions& r, Positions& z) {
   c.system.clear();
-  const auto scale = [&](const StiffDirection& s, Positions& motion) {
-    const double squared = s.stencil.weights_squared();
-    double a = 0;
-    for (int k = 0; k < s.stencil.free; ++k)
-      a += s.stencil.weight[k] * s.stencil.weight[k] * c.stuck.diagonal(s.stencil.vertex[k]);
-    a /= squared;
-    s.add(-(1 - std::sqrt(a / (a + squared * s.stiffness))) * s.along(motion) / squared, motion);
-  };
-  for (const StiffDirection& s : c.loose) scale(s, r);
+  for (const StiffDirection& s : c.loose) scale_rest(c.stuck.diagonal(), s, r);
   c.stuck.solve(r, z);
-  for (std::size_t i = c.loose.size(); i-- > 0;) scale(c.loose[i], z);
+  for (std::size_t i = c.loose.size(); i-- > 0;) scale_rest(c.stuck.diagonal(), c.loose[i], z);
 }
 
 }  // namespace
@@ -359,14 +351,14 @@ void apply_inverse(const Model& model, const ContactSettings& settings, ContactC
   if (!c.system.set(system_of(model, c), c.together, c.threads)) c.rest = c.wanted;
   c.rest.insert(c.rest.end(), tangents.begin(), tangents.end());
   c.part = part_of(system_of(model, c), c.system.directions());
-  for (const StiffDirection& s : c.rest) scale_rest(system_of(model, c), s, r);
+  for (const StiffDirection& s : c.rest) scale_rest(system_of(model, c).diagonal, s, r);
   if (c.system.directions().empty()) {
     apply_both_levels(model, c, scratch, r, z);
   } else {
     if (c.second != nullptr) c.second->restrict(model, r, c.threads, c.coarse);
     apply_low_rank(model, c, r, z);
   }
-  for (std::size_t i = c.rest.size(); i-- > 0;) scale_rest(system_of(model, c), c.rest[i], z);
+  for (std::size_t i = c.rest.size(); i-- > 0;) scale_rest(system_of(model, c).diagonal, c.rest[i], z);
 }
 
 namespace {
@@ -397,7 +389,7 @@ void bend(const Model& model, const Eigen::VectorXf& off, const std::vector<Stif
     c.coarse = -c.system.seen_by_motions(c.answer);
     c.second->add(model, c.coarse, c.threads, c.back);
   }
-  for (const StiffDirection& s : c.rest) scale_rest(system_of(model, c), s, c.back);
+  for (const StiffDirection& s : c.rest) scale_rest(system_of(model, c).diagonal, s, c.back);
   motion += c.back;
 }
 

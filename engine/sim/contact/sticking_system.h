@@ -36,15 +36,14 @@ class StickingSystem {
 
   // Tells whether the matrix has a spring between the vertices of a contact.
   bool has(const ContactStencil& stencil) const;
-  // Returns an entry of the diagonal [N/m].
-  double diagonal(std::int32_t vertex) const { return diagonal_[vertex]; }
+  const std::vector<double>& diagonal() const { return diagonal_; }  // by free vertex [N/m]
 
  private:
   // Returns whether the matrix has a factor.
   bool factorize(const System& system);
 
   bool serves_ = false;
-  // What the factor was made of, and whether there is one.
+  // The next four members tell what the factor was made of, and whether there is one.
   std::uint64_t system_ = 0;  // System::id
   Positions at_;
   std::vector<Spring> springs_;
