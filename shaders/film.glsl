@@ -11,11 +11,3 @@ vec3 filmic(vec3 light) {
 vec3 to_srgb(vec3 c) { return mix(1.055 * pow(max(c, vec3(1e-6)), vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308))); }
 
 vec4 film(vec3 light) { return vec4(to_srgb(filmic(light)), 1.0); }
-
-// Moves a smooth gradient by less than a level, so that no bands show (Bayer 1973, ordered dither of 4 x 4 pixels).
-float dither() {
-  ivec2 p = ivec2(gl_FragCoord.xy);
-  int x = p.x ^ p.y;
-  int order = ((x & 1) << 3) | ((p.y & 1) << 2) | ((x & 2)) | ((p.y & 2) >> 1);
-  return (float(order) - 7.5) / (16.0 * 255.0);
-}

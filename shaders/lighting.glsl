@@ -2,7 +2,6 @@
 // (engine/render/light_rig.h).
 uniform vec3 key_direction;
 uniform vec3 eye;
-uniform vec3 background;    // linear
 uniform vec3 ground_color;  // linear
 uniform vec3 ray_corner, ray_right, ray_up;  // directions from the eye; see Rays
 

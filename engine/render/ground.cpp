@@ -8,101 +8,46 @@
 
 namespace supple {
 
-void set_light(const Program& program, const StageLight& light) {
-  program.set("key_direction", light.to_key);
-  program.set("eye", light.camera.eye);
-  program.set("background", light.background);
-  program.set("ground_color", light.ground);
-  program.set("exposure", light.exposure);
-  program.set("key_color", light.rig.key);
-  program.set("fill_color", light.rig.fill);
-  program.set("rim_color", light.rig.rim);
-  program.set("sky_color", light.rig.sky);
-  program.set("key_share", light.rig.key_share);
-  program.set("sky_share", light.rig.sky_share);
-  program.set("ray_corner", light.rays.corner);
-  program.set("ray_right", light.rays.right);
-  program.set("ray_up", light.rays.up);
-}
-
-namespace {
-
-std::vector<std::string> shading(GroundShown shown, bool shadowed) {
-  std::vector<std::string> definitions = {"SHADED"};
-  if (shadowed) definitions.emplace_back("SHADOWED");
-  if (shown == GroundShown::shadows) definitions.emplace_back("SHADOWS_ALONE");
-  return definitions;
-}
-
-}  // namespace
-
 Ground::Ground(const GlTable& gl, const std::filesystem::path& shaders, int width, int height, double largest_body,
                GroundShown shown)
     : gl_(gl),
-      bare_(gl, shaders, "tiles", "ground"),
       arriving_(gl, shaders, "tiles", "ground_light"),
-      arriving_unshadowed_(gl, shaders, "tiles", "ground_light", {"UNSHADOWED"}),
-      shadowed_(gl, shaders, "tiles", "ground", shading(shown, true)),
-      open_(gl, shaders, "tiles", "ground", shading(shown, false)),
       width_(width),
       height_(height),
-      shown_(shown),
+      shade_(width, height, shown),
       occlusion_(largest_body),
       tiles_(width, height),
-      open_tiles_(width, height),
-      tile_buffer_(gl) {
-  const auto check = [&] {
-    if (gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-      throw RunError(fmt::format("OpenGL cannot draw into a picture of {} x {} pixels", width, height));
-  };
-  gl_.GenFramebuffers(1, &framebuffer_);
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-  gl_.GenRenderbuffers(1, &color_);
-  gl_.BindRenderbuffer(GL_RENDERBUFFER, color_);
-  gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, 0, GL_RGBA8, width, height);
-  gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_);
-  check();
-  const auto smooth_texture = [this](GLuint& texture) {
-    gl_.GenTextures(1, &texture);
-    gl_.BindTexture(GL_TEXTURE_2D, texture);
-    for (const auto& [key, value] : {std::pair{GL_TEXTURE_MIN_FILTER, GL_LINEAR},
-                                     {GL_TEXTURE_MAG_FILTER, GL_LINEAR},
-                                     {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE},
-                                     {GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE}}) {
-      gl_.TexParameteri(GL_TEXTURE_2D, key, value);
-    }
-  };
-  smooth_texture(occlusion_texture_);
-  smooth_texture(light_);
-  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RG16, (width + 1) / 2, (height + 1) / 2, 0, GL_RG, GL_UNSIGNED_SHORT, nullptr);
+      shadows_(width, height),
+      tile_buffer_(gl),
+      lit_(std::size_t(shade_.light_width()) * shade_.light_height()),
+      empty_(std::size_t(width) * height) {
+  gl_.GenTextures(1, &light_texture_);
+  gl_.BindTexture(GL_TEXTURE_2D, light_texture_);
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R16, shade_.light_width(), shade_.light_height(), 0, GL_RED, GL_UNSIGNED_SHORT,
+                 nullptr);
   gl_.GenFramebuffers(1, &light_framebuffer_);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, light_framebuffer_);
-  gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, light_, 0);
-  check();
+  gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, light_texture_, 0);
+  if (gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+    throw RunError(fmt::format("OpenGL cannot draw into a picture of {} x {} pixels", width, height));
 }
 
 Ground::~Ground() {
-  gl_.DeleteFramebuffers(1, &framebuffer_);
-  gl_.DeleteRenderbuffers(1, &color_);
   gl_.DeleteFramebuffers(1, &light_framebuffer_);
-  gl_.DeleteTextures(1, &light_);
-  gl_.DeleteTextures(1, &occlusion_texture_);
+  gl_.DeleteTextures(1, &light_texture_);
 }
 
-void Ground::set_stage(const Program& program, const StageLight& light) const {
-  program.use();
-  set_light(program, light);
-  program.set("stage", lit_);
-}
-
-void Ground::draw_bare(const Eigen::Matrix4f& view, const StageLight& light) {
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-  gl_.Viewport(0, 0, width_, height_);
-  set_stage(bare_, light);
-  tile_buffer_.draw({-1, -1, 3, -1, -1, 3});  // a triangle that holds the picture
-  bare_view_ = view;
-  bare_lit_ = lit_;
-  bare_colors_ = {light.ground, light.background, light.exposure};
+// Copies the bare ground into the picture, after computing it again where something about it has changed.
+void Ground::begin_picture(const Bare& now) {
+  if (!bare_ || *bare_ != now) {
+    tiles_.clear();
+    for (int row = 0; row < tiles_.rows(); ++row) {
+      for (int column = 0; column < tiles_.columns(); ++column) tiles_.mark(column, row);
+    }
+    shade_.shade_bare(tiles_, empty_);
+    bare_ = now;
+  }
+  picture_ = empty_;
 }
 
 // Marks where the shadows of all triangles fall on the ground.
@@ -122,7 +67,7 @@ void Ground::mark_shadows(const Eigen::Matrix4f& view, const StageLight& light, 
       cast_[i + 2] = points[i + 2] - height * across_z;
     }
     const bool fewer = !meshes[m].shadow_triangles.empty();
-    tiles_.mark(cast_, fewer ? meshes[m].shadow_triangles : meshes[m].triangles, view, around);
+    shadows_.mark(cast_, fewer ? meshes[m].shadow_triangles : meshes[m].triangles, view, around);
   }
 }
 
@@ -137,78 +82,60 @@ void Ground::mark_occlusion(const Eigen::Matrix4f& view, const std::vector<float
       if (open[std::size_t(v) * GroundOcclusion::cells + u] >= seen) continue;
       const auto x = static_cast<float>(occlusion_.origin_x() + (u + 0.5) * cell);
       const auto z = static_cast<float>(occlusion_.origin_z() + (v + 0.5) * cell);
-      const auto wide = static_cast<float>(2 * cell);  // the shader blends a texel into two neighbours on each side
+      const auto wide = static_cast<float>(2 * cell);  // a cell is blended into two neighbours on each side
       const auto first = static_cast<std::uint32_t>(corners.size() / 3);
       corners.insert(corners.end(),
                      {x - wide, 0, z - wide, x + wide, 0, z - wide, x - wide, 0, z + wide, x + wide, 0, z + wide});
       triangles.insert(triangles.end(), {first, first + 1, first + 2, first + 1, first + 2, first + 3});
     }
   }
-  open_tiles_.mark(corners, triangles, view);
-}
-
-// Copies the bare ground into the picture, after drawing it again where something about it has changed. Empties the
-// picture where only shadows are shown.
-void Ground::begin_picture(GLuint picture, const Eigen::Matrix4f& view, const StageLight& light) {
-  if (shown_ == GroundShown::shadows) {
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, picture);
-    gl_.ClearColor(0, 0, 0, 0);
-    gl_.Clear(GL_COLOR_BUFFER_BIT);
-    return;
-  }
-  const StageColors colors = {light.ground, light.background, light.exposure};
-  if (!bare_view_ || *bare_view_ != view || bare_lit_ != lit_ || bare_colors_ != colors) draw_bare(view, light);
-  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
-  gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, picture);
-  gl_.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  tiles_.mark(corners, triangles, view);
 }
 
 void Ground::draw(GLuint picture, const Eigen::Matrix4f& view, const StageLight& light, const ShadowMap& shadows,
                   const StageCover::Frame& cover, const std::vector<DrawMesh>& meshes,
                   const std::vector<std::vector<float>>& positions, const Tiles& covered) {
-  lit_ = Vec3(cover.light_center.x(), cover.light_center.z(), cover.light_radius);
-  begin_picture(picture, view, light);
+  const Vec3 stage(cover.light_center.x(), cover.light_center.z(), cover.light_radius);
+  shade_.set_stage(light, stage);
+  begin_picture({view, stage, {light.ground, light.background, light.exposure}});
   const std::vector<float>& open = occlusion_.compute(meshes, positions, cover.shade_center, cover.shade_extent);
+  occlusion_.smooth();
   tiles_.clear();
-  open_tiles_.clear();
+  shadows_.clear();
   mark_shadows(view, light, shadows.widest_penumbra(), meshes, positions);
+  tiles_ = shadows_;
   mark_occlusion(view, open);
-  open_tiles_.unmark(tiles_);
   // Pixels on the border of a tile take light from the tile beside it.
   Tiles hidden = covered;
   hidden.narrow();
-  for (Tiles* tiles : {&tiles_, &open_tiles_}) tiles->unmark(hidden);
-  draw_arriving(light, shadows, open);
-  for (Tiles* tiles : {&tiles_, &open_tiles_}) tiles->unmark(covered);
-
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, picture);
-  gl_.Viewport(0, 0, width_, height_);
-  for (const auto& [program, tiles] : {std::pair{&shadowed_, &tiles_}, {&open_, &open_tiles_}}) {
-    set_stage(*program, light);
-    program->set_texture("arriving", 0, GL_TEXTURE_2D, light_);
-    tile_buffer_.draw(tiles->corners());
-  }
+  shadows_.unmark(hidden);
+  tiles_.unmark(covered);
+  find_shadows(light, shadows);
+  shade_.shade(tiles_, lit_, occlusion_, picture_);
+  gl_.BindTexture(GL_TEXTURE_2D, picture);
+  gl_.TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, picture_.data());
 }
 
-// Finds the light in all tiles. Shadows are looked for only where there may be one.
-void Ground::draw_arriving(const StageLight& light, const ShadowMap& shadows, const std::vector<float>& open) {
-  gl_.ActiveTexture(GL_TEXTURE0);
-  gl_.BindTexture(GL_TEXTURE_2D, occlusion_texture_);
-  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R32F, GroundOcclusion::cells, GroundOcclusion::cells, 0, GL_RED, GL_FLOAT,
-                 open.data());
+// Finds the light in the tiles that shadows may reach.
+void Ground::find_shadows(const StageLight& light, const ShadowMap& shadows) {
   gl_.BindFramebuffer(GL_FRAMEBUFFER, light_framebuffer_);
-  gl_.Viewport(0, 0, (width_ + 1) / 2, (height_ + 1) / 2);
+  gl_.Viewport(0, 0, shade_.light_width(), shade_.light_height());
   gl_.ClearColor(1, 1, 1, 1);
   gl_.Clear(GL_COLOR_BUFFER_BIT);
-  for (const bool shadowed : {true, false}) {
-    const Program& program = shadowed ? arriving_ : arriving_unshadowed_;
-    set_stage(program, light);
-    program.set("occlusion_area", Vec3(occlusion_.origin_x(), occlusion_.origin_z(), occlusion_.extent()));
-    program.set("unseen", double(GroundOcclusion::unseen));
-    program.set_texture("occlusion_map", 0, GL_TEXTURE_2D, occlusion_texture_);
-    if (shadowed) shadows.bind(program, 1);
-    tile_buffer_.draw((shadowed ? tiles_ : open_tiles_).corners());
-  }
+  arriving_.use();
+  set_light(arriving_, light);
+  shadows.bind(arriving_, 0);
+  tile_buffer_.draw(shadows_.corners());
+  std::ranges::fill(lit_, std::uint16_t{0xffff});
+  const Tiles::Area box = shadows_.around();
+  if (box.width == 0) return;
+  const int left = box.left / 2, low = box.low / 2;
+  gl_.PixelStorei(GL_PACK_ALIGNMENT, 2);
+  gl_.PixelStorei(GL_PACK_ROW_LENGTH, shade_.light_width());
+  gl_.ReadPixels(left, low, (box.width + 1) / 2, (box.height + 1) / 2, GL_RED, GL_UNSIGNED_SHORT,
+                 &lit_[std::size_t(low) * shade_.light_width() + left]);
+  gl_.PixelStorei(GL_PACK_ROW_LENGTH, 0);
+  gl_.PixelStorei(GL_PACK_ALIGNMENT, 4);
 }
 
 }  // namespace supple

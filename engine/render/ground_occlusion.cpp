@@ -1,6 +1,7 @@
 #include "render/ground_occlusion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -83,23 +84,61 @@ const std::vector<float>& GroundOcclusion::compute(const std::vector<DrawMesh>& 
   std::fill(open_.begin(), open_.end(), 1.0f);
   const int radius = std::max(1, static_cast<int>(reach_ / cell));
   const auto whole = static_cast<float>(cell * cell), lowest = static_cast<float>(cell / std::sqrt(std::numbers::pi));
+  const Eigen::ArrayXf squares =  // of distances along one axis, from -radius to radius cells [m^2]
+      (Eigen::ArrayXf::LinSpaced(2 * radius + 1, static_cast<float>(-radius), static_cast<float>(radius)) *
+       static_cast<float>(cell))
+          .square();
   for (int j = 0; j < cells; ++j) {
     for (int i = 0; i < cells; ++i) {
       const Cover& cover = covers_[std::size_t(j) * cells + i];
       if (cover.area <= 1e-3f * whole) continue;
       const float y = std::max(cover.height / cover.area, lowest);
       const float patch = stronger * std::min(cover.area, whole) / static_cast<float>(std::numbers::pi);
+      const int left = std::max(0, i - radius), count = std::min(cells - 1, i + radius) - left + 1;
+      const auto across = squares.segment(left - i + radius, count);
       for (int v = std::max(0, j - radius); v <= std::min(cells - 1, j + radius); ++v) {
-        for (int u = std::max(0, i - radius); u <= std::min(cells - 1, i + radius); ++u) {
-          const auto d2 = static_cast<float>(((u - i) * (u - i) + (v - j) * (v - j)) * cell * cell);
-          const float s = d2 + y * y;
-          open_[std::size_t(v) * cells + u] -= y * y * patch / (s * s);
-        }
+        Eigen::Map<Eigen::ArrayXf> row(&open_[std::size_t(v) * cells + left], count);
+        row -= (y * y * patch) / (across + (squares[v - j + radius] + y * y)).square();
       }
     }
   }
   for (float& value : open_) value = std::max(value, 0.0f);
   return open_;
+}
+
+// A uniform cubic B-spline over the cells has these weights at a cell's middle and half-way to the next one.
+void GroundOcclusion::smooth() {
+  const auto weigh = [](float a, float b, float c, float d, bool half_way) {
+    return half_way ? (a + 23 * (b + c) + d) * (1.0f / 48) : (a + 4 * b + c) * (1.0f / 6);
+  };
+  const auto nearest = [](int cell) { return std::size_t(std::clamp(cell, 0, cells - 1)); };
+  // The square's border, over its edge from the middle, where contact shade fades.
+  constexpr float fades = 0.42f, gone = 0.495f;
+  const auto shown = [&](int node) {
+    const float off = std::abs((0.5f * static_cast<float>(node) + 0.5f) / cells - 0.5f);
+    const float t = std::clamp((gone - off) / (gone - fades), 0.0f, 1.0f);
+    return t * t * (3 - 2 * t);
+  };
+  between_.resize(std::size_t(nodes) * cells);
+  smooth_.resize(std::size_t(nodes) * nodes);
+  for (int v = 0; v < nodes; ++v) {
+    const float* rows[4];
+    for (int k = 0; k < 4; ++k) rows[k] = &open_[nearest(v / 2 - 1 + k) * cells];
+    float* to = &between_[std::size_t(v) * cells];
+    for (int u = 0; u < cells; ++u) to[u] = weigh(rows[0][u], rows[1][u], rows[2][u], rows[3][u], v % 2 == 1);
+  }
+  std::array<float, nodes> share;
+  for (int u = 0; u < nodes; ++u) share[std::size_t(u)] = shown(u);
+  for (int v = 0; v < nodes; ++v) {
+    const float* from = &between_[std::size_t(v) * cells];
+    float* to = &smooth_[std::size_t(v) * nodes];
+    for (int u = 0; u < nodes; ++u) {
+      const int cell = u / 2;
+      const float value =
+          weigh(from[nearest(cell - 1)], from[cell], from[nearest(cell + 1)], from[nearest(cell + 2)], u % 2 == 1);
+      to[u] = 1 + share[std::size_t(u)] * share[std::size_t(v)] * (value - 1);
+    }
+  }
 }
 
 }  // namespace supple

@@ -2,6 +2,7 @@
 // appear to stand on the ground. It is computed in each frame, on a grid, from the surface's triangles.
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "render/draw_list.h"
@@ -21,6 +22,13 @@ class GroundOcclusion {
                                     const std::vector<std::vector<float>>& positions, const Vec3& center,
                                     double extent);
 
+  // Returns the open sky over places of the ground [m], so smooth that cells do not show, and 1 beyond the square.
+  // Takes what the last call of smooth() found.
+  template <class Lanes>
+  Lanes at(const Lanes& x, const Lanes& z) const;
+  // Smooths what compute() found, for at().
+  void smooth();
+
   double origin_x() const { return origin_x_; }
   double origin_z() const { return origin_z_; }
   double extent() const { return extent_; }
@@ -38,6 +46,26 @@ class GroundOcclusion {
   float by_cell_ = 1, first_u_ = 0, first_v_ = 0;            // 1 over a cell's edge [1/m]; the first centre, in cells
   std::vector<Cover> covers_;                                // by cell
   std::vector<float> open_;
+  static constexpr int nodes = 2 * cells;
+  std::vector<float> between_, smooth_;  // by node, two for each cell, and by cell and node
 };
+
+template <class Lanes>
+Lanes GroundOcclusion::at(const Lanes& x, const Lanes& z) const {
+  const auto by_node = 2 * by_cell_;
+  const auto last = static_cast<float>(nodes) - 1.001f;
+  const Lanes u = ((x - static_cast<float>(origin_x_)) * by_node - 1).max(0.0f).min(last);
+  const Lanes v = ((z - static_cast<float>(origin_z_)) * by_node - 1).max(0.0f).min(last);
+  Lanes result;
+  for (Eigen::Index k = 0; k < result.size(); ++k) {
+    const auto i = static_cast<int>(u[k]), j = static_cast<int>(v[k]);
+    const float s = u[k] - static_cast<float>(i), t = v[k] - static_cast<float>(j);
+    const float* low = &smooth_[std::size_t(j) * nodes + std::size_t(i)];
+    const float* high = low + nodes;
+    const float below = low[0] + s * (low[1] - low[0]), above = high[0] + s * (high[1] - high[0]);
+    result[k] = below + t * (above - below);
+  }
+  return result;
+}
 
 }  // namespace supple

@@ -43,7 +43,7 @@ class DrawZone {
 
 }  // namespace
 
-// A flat backdrop has the colour that was asked for, whatever the light. The ground fades into what shaders/ground.frag
+// A flat backdrop has the colour that was asked for, whatever the light. The ground fades into what GroundShade
 // has far from all bodies.
 Vec3 backdrop_of(const Stage& stage) {
   if (stage.backdrop != Backdrop::ground) return stage.colors.background;
@@ -82,7 +82,7 @@ Renderer::~Renderer() {
   gl_.DeleteTextures(1, &visible_);
   gl_.DeleteTextures(1, &color_texture_);
   gl_.DeleteBuffers(1, &color_buffer_);
-  gl_.DeleteRenderbuffers(1, &picture_color_);
+  gl_.DeleteTextures(1, &picture_color_);
 }
 
 void Renderer::make_targets() {
@@ -93,10 +93,10 @@ void Renderer::make_targets() {
   gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   gl_.GenFramebuffers(1, &picture_framebuffer_);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, picture_framebuffer_);
-  gl_.GenRenderbuffers(1, &picture_color_);
-  gl_.BindRenderbuffer(GL_RENDERBUFFER, picture_color_);
-  gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, 0, GL_RGBA8, stage_.width, stage_.height);
-  gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, picture_color_);
+  gl_.GenTextures(1, &picture_color_);
+  gl_.BindTexture(GL_TEXTURE_2D, picture_color_);
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, stage_.width, stage_.height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, picture_color_, 0);
   const GLenum status = gl_.CheckFramebufferStatus(GL_FRAMEBUFFER);
   if (status != GL_FRAMEBUFFER_COMPLETE)
     throw RunError(fmt::format("the picture's framebuffer is incomplete (0x{:04x})", status));
@@ -273,8 +273,7 @@ Image Renderer::draw_moment(const DrawList& list, const StageCover::Frame& cover
   find_visible(view, light, list);
   zone.next("ground");
   if (stage_.backdrop == Backdrop::ground || stage_.backdrop == Backdrop::shadows) {
-    ground_->draw(picture_framebuffer_, view, light, *shadows_, cover, stage_.meshes, list.positions,
-                  visibility_->full());
+    ground_->draw(picture_color_, view, light, *shadows_, cover, stage_.meshes, list.positions, visibility_->full());
   } else {
     clear_picture();
   }

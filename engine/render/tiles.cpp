@@ -73,13 +73,19 @@ void Tiles::unmark(const Tiles& others) {
 }
 
 void Tiles::narrow() {
+  for (std::uint8_t& mark : marked_) mark ^= 1;
+  widen();
+  for (std::uint8_t& mark : marked_) mark ^= 1;
+}
+
+void Tiles::widen() {
   const std::vector<std::uint8_t> before = marked_;
   for (int y = 0; y < rows_; ++y) {
     for (int x = 0; x < columns_; ++x) {
-      if (before[std::size_t(y) * columns_ + x] != 0) continue;
+      if (before[std::size_t(y) * columns_ + x] == 0) continue;
       for (int v = std::max(0, y - 1); v <= std::min(rows_ - 1, y + 1); ++v) {
         for (int u = std::max(0, x - 1); u <= std::min(columns_ - 1, x + 1); ++u)
-          marked_[std::size_t(v) * columns_ + u] = 0;
+          marked_[std::size_t(v) * columns_ + u] = 1;
       }
     }
   }

@@ -27,6 +27,8 @@ class Tiles {
 
   // Unmarks the tiles of which a neighbour is not marked. Tiles beyond the picture count as marked.
   void narrow();
+  // Marks the neighbours of all marked tiles.
+  void widen();
 
   void mark(int column, int row) { marked_[std::size_t(row) * columns_ + column] = 1; }
   int columns() const { return columns_; }

@@ -52,6 +52,29 @@ TEST(Tiles, TheCornersCoverTheMarkedTilesAndNothingElse) {
   EXPECT_NEAR(area * width * height / 4, expected, 1);
 }
 
+TEST(Tiles, WideningMarksNeighboursAndNarrowingTakesThemAway) {
+  Tiles tiles(width, height), corner(width, height);
+  tiles.mark(5, 6);
+  corner.mark(0, 0);
+  Tiles wide = tiles, wide_corner = corner;
+  wide.widen();
+  wide_corner.widen();
+  for (int y = 0; y < tiles.rows(); ++y) {
+    for (int x = 0; x < tiles.columns(); ++x) {
+      EXPECT_EQ(wide.marked(x, y), std::abs(x - 5) <= 1 && std::abs(y - 6) <= 1);
+      EXPECT_EQ(wide_corner.marked(x, y), x <= 1 && y <= 1);
+    }
+  }
+  wide.narrow();
+  wide_corner.narrow();  // tiles beyond the picture count as marked
+  for (int y = 0; y < tiles.rows(); ++y) {
+    for (int x = 0; x < tiles.columns(); ++x) {
+      EXPECT_EQ(wide.marked(x, y), tiles.marked(x, y));
+      EXPECT_EQ(wide_corner.marked(x, y), corner.marked(x, y));
+    }
+  }
+}
+
 TEST(Tiles, ThoseOfAnotherSetCanBeTakenAway) {
   Tiles all(width, height), some(width, height);
   all.mark({-1, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2}, view());
