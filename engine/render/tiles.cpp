@@ -54,12 +54,17 @@ void Tiles::mark(const std::vector<float>& positions, const std::vector<std::uin
     std::ranges::fill(marked_, std::uint8_t{1});
     return;
   }
+  // Triangles follow their neighbours in a mesh, so that most of them lie in a box that has just been marked.
+  int left = columns_, right = -1, low = rows_, high = -1;
   for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
     const std::uint32_t a = triangles[t], b = triangles[t + 1], c = triangles[t + 2];
-    const int left = std::max(0, std::min({left_of_[a], left_of_[b], left_of_[c]}));
-    const int right = std::min(columns_ - 1, std::max({right_of_[a], right_of_[b], right_of_[c]}));
-    const int low = std::max(0, std::min({low_of_[a], low_of_[b], low_of_[c]}));
-    const int high = std::min(rows_ - 1, std::max({high_of_[a], high_of_[b], high_of_[c]}));
+    const int first = std::max(0, std::min({left_of_[a], left_of_[b], left_of_[c]}));
+    const int last = std::min(columns_ - 1, std::max({right_of_[a], right_of_[b], right_of_[c]}));
+    const int lowest = std::max(0, std::min({low_of_[a], low_of_[b], low_of_[c]}));
+    const int highest = std::min(rows_ - 1, std::max({high_of_[a], high_of_[b], high_of_[c]}));
+    if (first >= left && last <= right && lowest >= low && highest <= high) continue;
+    if (first > last || lowest > highest) continue;
+    left = first, right = last, low = lowest, high = highest;
     for (int y = low; y <= high; ++y) {
       for (int x = left; x <= right; ++x) marked_[std::size_t(y) * columns_ + x] = 1;
     }
