@@ -285,6 +285,8 @@ std::optional<double> skin_excess(const DrawnBody& drawn, const std::vector<floa
   const Positions at = Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(
                            skin.data(), Eigen::Index(skin.size() / 3), 3)
                            .cast<double>();
+  // Nearly always no edge of any length is stretched so much, which is quicker to tell.
+  if (drawn.limit && drawn.limit->largest_stretch(at) <= unremarkable) return std::nullopt;
   const StretchedEdge most = most_stretched_edge(drawn.skin.rest, at, shortest * bounds_of(mesh.rest).diagonal());
   if (most.factor <= unremarkable) return std::nullopt;
   return most.factor / std::max(1.0, largest_element_stretch(mesh, now));

@@ -12,8 +12,8 @@ namespace supple {
 double SkinLimit::largest_stretch(const Positions& skin) const {
   double most = 0;
   for (const Edge& edge : edges) {
-    const auto at = [&](std::int32_t node) { return skin.row(copies[std::size_t(begin[std::size_t(node)])]); };
-    const double now = (at(edge.from) - at(edge.to)).squaredNorm(), rest = edge.length * edge.length;
+    const double now = (skin.row(edge.from_vertex) - skin.row(edge.to_vertex)).squaredNorm();
+    const double rest = edge.length * edge.length;
     if (now > most * rest) most = now / rest;
   }
   return std::sqrt(most);
@@ -75,7 +75,8 @@ std::optional<SkinLimit> skin_limit(const TriMesh& skin, const Embedding& embedd
   for (std::size_t from = 0; from < nodes; ++from) {
     for (const SkinEdge& edge : graph.edges[from]) {
       const auto to = std::size_t(edge.to);
-      if (to > from && edge.length > 0) limit.edges.push_back({std::int32_t(from), edge.to, edge.length});
+      if (to > from && edge.length > 0)
+        limit.edges.push_back({std::int32_t(from), edge.to, graph.vertex_of[from], graph.vertex_of[to], edge.length});
     }
   }
   limit.begin.assign(nodes + 1, 0);

@@ -13,8 +13,9 @@ namespace supple {
 // Lists the edges of a skin. Skin vertices at one place, as along a crease, are one node and move as one.
 struct SkinLimit {
   struct Edge {
-    std::int32_t from, to;  // nodes
-    double length;          // at rest [m]
+    std::int32_t from, to;                // nodes
+    std::int32_t from_vertex, to_vertex;  // one skin vertex of each
+    double length;                        // at rest [m]
   };
   std::vector<Edge> edges;
   std::vector<char> movable;                // by node: whether it lies outside
