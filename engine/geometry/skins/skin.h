@@ -23,8 +23,8 @@ struct Skin {
   std::vector<std::array<float, 2>> square;  // place in the printed pattern by vertex, in squares; empty without one
   std::vector<FlatPlace> flat;               // place on the flat cloth by vertex; empty: it is no cloth
   std::vector<SurfaceColor> color;           // colour in the file by vertex; empty where it has none
-  // A number for each vertex, if there are colours: vertices with one number were one vertex before colours split it,
-  // and have one normal.
+  // A number for each vertex, if there are colours, or a print with seams: vertices with one number were one vertex
+  // before these split it, and have one normal.
   std::vector<std::int32_t> smooth;
   std::vector<std::int32_t> vertex_of;  // by vertex of a collider that deforms: the vertex of its solid; else empty
 };
@@ -37,7 +37,8 @@ Skin skin_of(const Shape& shape, double cell);
 
 // Makes a skin without layers from triangles over a mesh's vertices. A vertex on a crease of the surface is split into
 // several, so that edges look sharp; vertex_of gives each skin vertex's mesh vertex. square: edge length of the printed
-// pattern's squares [m], laid along the two axes that the surface faces least; 0 prints no pattern.
+// pattern's squares [m]; 0 prints no pattern. A part that faces about one way is printed along the two axes that it
+// faces least, and a part that does not is laid flat (flat_charts.h), where seams split vertices too.
 Skin skin_of_surface(const Positions& points, const Triangles& triangles, double square,
                      std::vector<std::int32_t>& vertex_of);
 

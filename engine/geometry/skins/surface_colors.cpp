@@ -240,25 +240,27 @@ SplitSurface refined_split(const SplitSurface& coarse, Eigen::Index places, doub
 }
 
 // Splits the vertices of a skin as those of a split surface with the same triangles are split, and gives them the
-// colours of that surface.
-Skin split_as(const Skin& plain, const SplitSurface& colored_surface) {
+// colours of that surface. before: by vertex of the result, the vertex of the plain skin.
+Skin split_as(const Skin& plain, const SplitSurface& colored_surface, std::vector<std::int32_t>& before) {
   Skin skin;
+  before.clear();
   skin.rest.triangles.resize(plain.rest.triangles.rows(), 3);
   std::unordered_map<std::array<std::int32_t, 2>, std::int32_t, KeyHash> names;  // by vertex of both surfaces
   for (Eigen::Index t = 0; t < plain.rest.triangles.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const std::int32_t vertex = plain.rest.triangles(t, k), colored = colored_surface.mesh.triangles(t, k);
-      const auto [at, added] = names.try_emplace({vertex, colored}, static_cast<std::int32_t>(skin.smooth.size()));
+      const auto [at, added] = names.try_emplace({vertex, colored}, static_cast<std::int32_t>(before.size()));
       skin.rest.triangles(t, k) = at->second;
       if (!added) continue;
-      skin.smooth.push_back(vertex);
+      before.push_back(vertex);
+      skin.smooth.push_back(plain.smooth.empty() ? vertex : plain.smooth[std::size_t(vertex)]);
       skin.color.push_back(colored_surface.colors[std::size_t(colored)]);
       if (!plain.square.empty()) skin.square.push_back(plain.square[std::size_t(vertex)]);
     }
   }
-  skin.rest.points = plain.rest.points(skin.smooth, Eigen::all);
-  skin.occlusion.assign(skin.smooth.size(), 1.0f);
-  skin.paint.assign(skin.smooth.size(), plain.paint.empty() ? std::array<float, max_paint_layers>{} : plain.paint[0]);
+  skin.rest.points = plain.rest.points(before, Eigen::all);
+  skin.occlusion.assign(before.size(), 1.0f);
+  skin.paint.assign(before.size(), plain.paint.empty() ? std::array<float, max_paint_layers>{} : plain.paint[0]);
   return skin;
 }
 
@@ -337,16 +339,17 @@ Vec3 srgb_at(const SurfaceColors& colors, Eigen::Index triangle, const Vec3& wei
 }
 
 std::vector<std::int32_t> put_on_colors(Skin& skin, const TriMesh& surface, const SurfaceColors& colors) {
-  skin = split_as(skin, split(surface, colors));
-  return skin.smooth;
+  std::vector<std::int32_t> before;
+  skin = split_as(skin, split(surface, colors), before);
+  return before;
 }
 
 Skin colored_skin(const TriMesh& surface, const SurfaceColors& colors, double longest, Eigen::Index most,
                   double square) {
   const SplitSurface fine = refined_split(split(surface, colors), surface.points.rows(), longest, most);
   const TriMesh whole = joined(fine);
-  std::vector<std::int32_t> vertex_of;
-  return split_as(skin_of_surface(whole.points, whole.triangles, square, vertex_of), fine);
+  std::vector<std::int32_t> vertex_of, before;
+  return split_as(skin_of_surface(whole.points, whole.triangles, square, vertex_of), fine, before);
 }
 
 }  // namespace supple
