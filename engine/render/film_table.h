@@ -17,16 +17,18 @@ class FilmTable {
     }
   }
 
-  // Returns the colours of the screen, from 0 to 1, for light times the exposure; within 1e-5 of film_of().
+  // Returns the colours of the screen, from 0 to 1, for light times the exposure; within 1e-5 of film_of(). What is not
+  // a number is black.
   template <class Lanes>
   Lanes operator()(const Lanes& light) const {
     // Over the root of the light, the curve is nearly straight where it is dark.
     const Lanes place = (light.max(0.0f).sqrt() * by_root).min(static_cast<float>(intervals) - 0.001f);
     Lanes result;
     for (Eigen::Index k = 0; k < result.size(); ++k) {
-      const auto i = static_cast<int>(place[k]);
+      const float at = place[k] > 0 ? place[k] : 0;
+      const auto i = static_cast<int>(at);
       const float low = values_[std::size_t(i)], high = values_[std::size_t(i) + 1];
-      result[k] = low + (place[k] - static_cast<float>(i)) * (high - low);
+      result[k] = low + (at - static_cast<float>(i)) * (high - low);
     }
     return result;
   }

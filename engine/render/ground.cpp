@@ -14,13 +14,14 @@ Ground::Ground(const GlTable& gl, const std::filesystem::path& shaders, int widt
       arriving_(gl, shaders, "tiles", "ground_light"),
       width_(width),
       height_(height),
+      shown_(shown),
       shade_(width, height, shown),
       occlusion_(largest_body),
       tiles_(width, height),
       shadows_(width, height),
       tile_buffer_(gl),
       lit_(std::size_t(shade_.light_width()) * shade_.light_height()),
-      empty_(std::size_t(width) * height) {
+      empty_(shown == GroundShown::all ? std::size_t(width) * height : 0) {
   gl_.GenTextures(1, &light_texture_);
   gl_.BindTexture(GL_TEXTURE_2D, light_texture_);
   gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R16, shade_.light_width(), shade_.light_height(), 0, GL_RED, GL_UNSIGNED_SHORT,
@@ -37,8 +38,13 @@ Ground::~Ground() {
   gl_.DeleteTextures(1, &light_texture_);
 }
 
-// Copies the bare ground into the picture, after computing it again where something about it has changed.
+// Copies the bare ground into the picture, after computing it again where something about it has changed. Empties the
+// picture where only shadows are shown.
 void Ground::begin_picture(const Bare& now) {
+  if (shown_ == GroundShown::shadows) {
+    picture_.assign(std::size_t(width_) * height_, 0);
+    return;
+  }
   if (!bare_ || *bare_ != now) {
     tiles_.clear();
     for (int row = 0; row < tiles_.rows(); ++row) {
@@ -103,8 +109,8 @@ void Ground::draw(GLuint picture, const Eigen::Matrix4f& view, const StageLight&
   tiles_.clear();
   shadows_.clear();
   mark_shadows(view, light, shadows.widest_penumbra(), meshes, positions);
-  tiles_ = shadows_;
   mark_occlusion(view, open);
+  tiles_.mark(shadows_);
   // Pixels on the border of a tile take light from the tile beside it.
   Tiles hidden = covered;
   hidden.narrow();

@@ -52,6 +52,7 @@ class Ground {
   const GlTable& gl_;
   Program arriving_;
   int width_, height_;
+  GroundShown shown_;
   GroundShade shade_;
   GroundOcclusion occlusion_;
   Tiles tiles_;    // those on which bodies have an effect

@@ -58,8 +58,9 @@ Lanes GroundOcclusion::at(const Lanes& x, const Lanes& z) const {
   const Lanes v = ((z - static_cast<float>(origin_z_)) * by_node - 1).max(0.0f).min(last);
   Lanes result;
   for (Eigen::Index k = 0; k < result.size(); ++k) {
-    const auto i = static_cast<int>(u[k]), j = static_cast<int>(v[k]);
-    const float s = u[k] - static_cast<float>(i), t = v[k] - static_cast<float>(j);
+    const float across = u[k] > 0 ? u[k] : 0, along = v[k] > 0 ? v[k] : 0;  // 0 for what is not a number
+    const auto i = static_cast<int>(across), j = static_cast<int>(along);
+    const float s = across - static_cast<float>(i), t = along - static_cast<float>(j);
     const float* low = &smooth_[std::size_t(j) * nodes + std::size_t(i)];
     const float* high = low + nodes;
     const float below = low[0] + s * (low[1] - low[0]), above = high[0] + s * (high[1] - high[0]);

@@ -5,16 +5,16 @@
 namespace supple {
 namespace {
 
-constexpr int lanes = Tiles::edge / 2;
-using Lanes = Eigen::Array<float, lanes, 1>;
+constexpr int lanes = GroundShade::lanes;
+using Lanes = GroundShade::Lanes;
 
 Lanes smoothstep(float low, float high, const Lanes& value) {
   const Lanes t = ((value - low) / (high - low)).max(0.0f).min(1.0f);
   return t * t * (3 - 2 * t);
 }
 
-// Moves a smooth gradient by less than a level, so that no bands show (Bayer 1973, ordered dither of 4 x 4 pixels), as
-// shaders/film.glsl does. Returns the amount in levels.
+// Returns by how much a pixel's colour is moved, less than a level, so that a smooth gradient shows no bands (Bayer
+// 1973, ordered dither of 4 x 4 pixels) [levels].
 float dither(int x, int y) {
   const int across = x ^ y;
   const int order = (across & 1) << 3 | (y & 1) << 2 | (across & 2) | (y & 2) >> 1;
@@ -151,8 +151,8 @@ void GroundShade::light_places(int left, int y, const Lanes& lit, const GroundOc
 }
 
 // Interpolates the planes in a tile, dithers and writes them. Each pixel lies a quarter of a step from the nearest
-// place of half the resolution. It takes the mean of four interpolated values around it, half a step apart, which
-// smooths what the shares of light differ in from one block of 2 x 2 places to the next.
+// place of half the resolution. It takes the mean of the four interpolated values that lie half a step from it along
+// both axes, which smooths what the shares of light differ in from one block of 2 x 2 places to the next.
 void GroundShade::write_tile(int column, int row, std::vector<std::uint32_t>& picture) const {
   constexpr float far = 0.125f, here = 0.5f, near = 0.375f;
   constexpr float levels = 255;

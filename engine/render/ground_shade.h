@@ -24,6 +24,9 @@ using GroundLight = std::vector<std::uint16_t>;
 
 class GroundShade {
  public:
+  static constexpr int lanes = Tiles::edge / 2;  // places of half the resolution along the edge of a tile
+  using Lanes = Eigen::Array<float, lanes, 1>;
+
   GroundShade(int width, int height, GroundShown shown);
 
   // Sets the light and the stage of the calls that follow. stage: x and z of the centre of the ground's lit disc, and
@@ -42,9 +45,6 @@ class GroundShade {
   int light_height() const { return light_height_; }
 
  private:
-  static constexpr int lanes = Tiles::edge / 2;  // places of half the resolution along the edge of a tile
-  using Lanes = Eigen::Array<float, lanes, 1>;
-
   void shade_all(const Tiles& tiles, const GroundLight* lit, const GroundOcclusion* open,
                  std::vector<std::uint32_t>& picture);
   void light_tile(int column, int row, const GroundLight* lit, const GroundOcclusion* open);

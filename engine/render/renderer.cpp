@@ -63,8 +63,9 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
   make_targets();
   shadows_ =
       std::make_unique<ShadowMap>(gl_, shaders, cover_.largest_body(), stage_.light.to_key.normalized(), stage_.width);
-  ground_ = std::make_unique<Ground>(gl_, shaders, stage_.width, stage_.height, cover_.largest_body(),
-                                     stage_.backdrop == Backdrop::shadows ? GroundShown::shadows : GroundShown::all);
+  if (stage_.backdrop == Backdrop::ground || stage_.backdrop == Backdrop::shadows)
+    ground_ = std::make_unique<Ground>(gl_, shaders, stage_.width, stage_.height, cover_.largest_body(),
+                                       stage_.backdrop == Backdrop::shadows ? GroundShown::shadows : GroundShown::all);
   tile_buffer_ = std::make_unique<TileBuffer>(gl_);
   textures_ = std::make_unique<TextureBuffer>(gl_, stage_.meshes);
   make_shading_program();
@@ -272,7 +273,7 @@ Image Renderer::draw_moment(const DrawList& list, const StageCover::Frame& cover
   zone.next("visibility");
   find_visible(view, light, list);
   zone.next("ground");
-  if (stage_.backdrop == Backdrop::ground || stage_.backdrop == Backdrop::shadows) {
+  if (ground_) {
     ground_->draw(picture_color_, view, light, *shadows_, cover, stage_.meshes, list.positions, visibility_->full());
   } else {
     clear_picture();
@@ -312,7 +313,6 @@ Image Renderer::draw_exposed(const DrawList& list) {
 
 std::vector<PassImage> Renderer::passes(const DrawList& list, const DrawList* next,
                                         std::span<const PicturePass> asked) {
-  const bool ground = stage_.backdrop == Backdrop::ground || stage_.backdrop == Backdrop::shadows;
   const Visibility* seen = visibility_.get();
   if (list.exposure) {
     if (!sharp_) sharp_ = std::make_unique<Visibility>(stage_.width, stage_.height, stage_.samples, stage_.meshes);
@@ -323,7 +323,7 @@ std::vector<PassImage> Renderer::passes(const DrawList& list, const DrawList* ne
                  rays_through(list.camera, stage_.width, stage_.height).up.norm());
     seen = sharp_.get();
   }
-  return passes_of({stage_.meshes, list, next, *seen, stage_.width, stage_.height, ground}, asked);
+  return passes_of({stage_.meshes, list, next, *seen, stage_.width, stage_.height, ground_ != nullptr}, asked);
 }
 
 void Renderer::draw_marks(const Eigen::Matrix4f& view, const DrawList& list) {

@@ -93,7 +93,7 @@ class Renderer {
   std::unique_ptr<Visibility> sharp_;  // for passes of blurred pictures; made when they are first asked for
   std::unique_ptr<ShadowMap> shadows_;
   std::unique_ptr<ShadowMap> rim_shadows_;  // of the rim light, once something is translucent
-  std::unique_ptr<Ground> ground_;
+  std::unique_ptr<Ground> ground_;          // where something of it is seen
   OverlayPlaces overlays_;
   std::unique_ptr<Captions> captions_;
   std::unique_ptr<Graphs> graphs_;

@@ -120,6 +120,11 @@ void StageCover::follow_with_light(const std::vector<Ball>& balls, const DrawLis
     const Vec3 from = ball.center - frame.light_center;
     const double beyond = horizontal(from) + ball.radius - frame.light_radius;
     if (beyond <= 0 || frame.light_radius > coarsest * rest_.light_radius) continue;
+    if (horizontal(from) + frame.light_radius <= ball.radius) {  // the ball is all around the disc
+      frame.light_radius = ball.radius;
+      frame.light_center += Vec3(from.x(), 0, from.z());
+      continue;
+    }
     frame.light_radius += 0.5 * beyond;
     frame.light_center += 0.5 * beyond / horizontal(from) * Vec3(from.x(), 0, from.z());
   }

@@ -17,7 +17,7 @@ struct StageLight {
   Rays rays;
 };
 
-// Passes the lights and rays to a program whose shader includes film.glsl and lighting.glsl.
+// Passes the lights and rays to a program whose shader includes lighting.glsl, or film.glsl too.
 void set_light(const Program& program, const StageLight& light);
 
 }  // namespace supple

@@ -71,6 +71,10 @@ void Tiles::mark(const std::vector<float>& positions, const std::vector<std::uin
   }
 }
 
+void Tiles::mark(const Tiles& others) {
+  for (std::size_t i = 0; i < marked_.size(); ++i) marked_[i] |= others.marked_[i];
+}
+
 void Tiles::unmark(const Tiles& others) {
   for (std::size_t i = 0; i < marked_.size(); ++i) {
     if (others.marked_[i] != 0) marked_[i] = 0;

@@ -22,7 +22,8 @@ class Tiles {
   void mark(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles,
             const Eigen::Matrix4f& view, double around = 0);
 
-  // Unmarks the tiles that are marked in another set of the same picture.
+  // Marks the tiles that are marked in another set of the same picture, or unmarks them.
+  void mark(const Tiles& others);
   void unmark(const Tiles& others);
 
   // Unmarks the tiles of which a neighbour is not marked. Tiles beyond the picture count as marked.

@@ -73,7 +73,7 @@ std::set<std::int32_t> seams_of(const Mesh& mesh, const std::vector<LaidTriangle
 TEST(FlatCharts, ACylinderIsUnrolledWithASeamOnItsBack) {
   const Mesh mesh = around_y(
       13, 40, [](double) { return 0.3; }, [](double s) { return 1.2 * s; });
-  const std::vector<LaidTriangle> flat = flat_triangles(mesh.points, mesh.triangles);
+  const std::vector<LaidTriangle> flat = laid_triangles(mesh.points, mesh.triangles);
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
     const Eigen::Vector2d stretch = stretch_of(mesh, t, flat[std::size_t(t)]);
     ASSERT_NEAR(stretch[0], 1, 1e-6);
@@ -88,7 +88,7 @@ TEST(FlatCharts, ACylinderIsUnrolledWithASeamOnItsBack) {
 TEST(FlatCharts, LinesGoAlongASkirtAndAroundIt) {
   const auto radius = [](double s) { return 0.36 - 0.18 * s; };
   const Mesh mesh = around_y(21, 60, radius, [](double s) { return 0.5 * s; });
-  const std::vector<LaidTriangle> flat = flat_triangles(mesh.points, mesh.triangles);
+  const std::vector<LaidTriangle> flat = laid_triangles(mesh.points, mesh.triangles);
   std::map<std::int32_t, Eigen::Vector2d> place;
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
     const Eigen::Vector2d stretch = stretch_of(mesh, t, flat[std::size_t(t)]);
@@ -110,7 +110,7 @@ TEST(FlatCharts, ABallHasCapsAndAWall) {
   const Mesh mesh = around_y(
       31, 60, [](double s) { return std::sin(pi * (0.02 + 0.96 * s)); },
       [](double s) { return -std::cos(pi * (0.02 + 0.96 * s)); });
-  const std::vector<LaidTriangle> flat = flat_triangles(mesh.points, mesh.triangles);
+  const std::vector<LaidTriangle> flat = laid_triangles(mesh.points, mesh.triangles);
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
     const Eigen::Vector2d stretch = stretch_of(mesh, t, flat[std::size_t(t)]).cwiseAbs();
     ASSERT_GT(stretch[0], 0.5);
@@ -129,7 +129,7 @@ TEST(FlatCharts, ATubeThatLiesIsPrintedAlongItself) {
   for (const int axis : {0, 2}) {
     Mesh mesh = standing;
     mesh.points.col(axis).swap(mesh.points.col(1));
-    const std::vector<LaidTriangle> flat = flat_triangles(mesh.points, mesh.triangles);
+    const std::vector<LaidTriangle> flat = laid_triangles(mesh.points, mesh.triangles);
     for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
       ASSERT_NEAR(stretch_of(mesh, t, flat[std::size_t(t)]).cwiseAbs().maxCoeff(), 1, 1e-6) << axis;
   }
@@ -140,11 +140,38 @@ TEST(FlatCharts, TrianglesWithoutAreaDoNoHarm) {
   Mesh mesh = around_y(
       5, 12, [](double) { return 0.3; }, [](double s) { return s; });
   mesh.triangles.row(7) << 3, 3, 4;
-  for (const LaidTriangle& flat : flat_triangles(mesh.points, mesh.triangles))
+  for (const LaidTriangle& flat : laid_triangles(mesh.points, mesh.triangles))
     for (const Eigen::Vector2d& at : flat) ASSERT_TRUE(at.allFinite());
   mesh.points.setZero();
-  for (const LaidTriangle& flat : flat_triangles(mesh.points, mesh.triangles))
+  for (const LaidTriangle& flat : laid_triangles(mesh.points, mesh.triangles))
     for (const Eigen::Vector2d& at : flat) ASSERT_TRUE(at.allFinite());
+}
+
+// A hole in the front of a tube adds a seam, and the sheet around it stays unstretched.
+TEST(FlatCharts, AWallWithAHoleIsUnrolledToo) {
+  Mesh mesh = around_y(
+      13, 40, [](double) { return 0.3; }, [](double s) { return 1.2 * s; });
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    const Vec3 corner = mesh.points.row(mesh.triangles(t, 0));
+    if (std::hypot(corner.x() - 0.15, corner.y() - 0.6) > 0.12 || corner.z() < 0) kept.push_back(t);
+  }
+  ASSERT_LT(kept.size(), std::size_t(mesh.triangles.rows()) - 8);
+  mesh.triangles = mesh.triangles(kept, Eigen::all).eval();
+  const std::vector<LaidTriangle> laid = laid_triangles(mesh.points, mesh.triangles);
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
+    ASSERT_NEAR(stretch_of(mesh, t, laid[std::size_t(t)]).maxCoeff(), 1, 1e-5);
+}
+
+// Where squares are not drawn, nothing is laid flat and no vertex is split.
+TEST(FlatCharts, ASkinWithoutSquaresHasNoSeam) {
+  const Mesh mesh = around_y(
+      13, 40, [](double) { return 0.3; }, [](double s) { return 1.2 * s; });
+  std::vector<std::int32_t> vertex_of;
+  const Skin skin = skin_of_surface(mesh.points, mesh.triangles, 0.1, vertex_of, BentPart::projected);
+  EXPECT_EQ(vertex_of.size(), std::size_t(mesh.points.rows()));
+  EXPECT_TRUE(skin.smooth.empty());
+  EXPECT_EQ(skin.square.size(), vertex_of.size());
 }
 
 // On a seam, a vertex of the skin is split, and its parts keep one normal. Squares are as large as on flat cloth.

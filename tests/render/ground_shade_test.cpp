@@ -191,6 +191,45 @@ TEST(GroundShade, ShadowsAloneCoverAsMuchAsTheyTake) {
   EXPECT_GT(most, 60);
 }
 
+// Frame after frame, tiles come and go; what a tile shows does not depend on those before it.
+TEST(GroundShade, TilesDoNotDependOnTheFrameBefore) {
+  GroundShade shade(width, height, GroundShown::all);
+  const Shaded scene(shade);
+  shade.set_stage(scene.light, stage);
+  std::vector<std::uint32_t> all(std::size_t(width) * height), part(all.size());
+  shade.shade(all_tiles(), scene.lit, scene.occlusion, all);
+  GroundShade other(width, height, GroundShown::all);
+  other.set_stage(scene.light, stage);
+  const GroundLight dark(scene.lit.size(), 0);
+  other.shade(all_tiles(), dark, scene.occlusion, part);
+  Tiles some(width, height);
+  for (int row = 0; row < some.rows(); ++row) {
+    for (int column = row % 3; column < some.columns(); column += 3) some.mark(column, row);
+  }
+  other.shade(some, scene.lit, scene.occlusion, part);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const std::size_t at = std::size_t(y) * width + x;
+      if (!some.marked(x / Tiles::edge, y / Tiles::edge)) continue;
+      ASSERT_EQ(part[at], all[at]) << x << ", " << y;
+    }
+  }
+}
+
+TEST(GroundShade, PicturesMayBeSmallerThanATile) {
+  for (const auto& [wide, high] : {std::pair{1, 1}, {5, 3}, {17, 2}}) {
+    GroundShade shade(wide, high, GroundShown::all);
+    StageLight light = light_at(above);
+    light.rays = rays_through(above, wide, high);
+    shade.set_stage(light, stage);
+    Tiles tiles(wide, high);
+    for (int column = 0; column < tiles.columns(); ++column) tiles.mark(column, 0);
+    std::vector<std::uint32_t> picture(std::size_t(wide) * high);
+    shade.shade_bare(tiles, picture);
+    for (const std::uint32_t pixel : picture) EXPECT_EQ(byte_of(pixel, 3), 255);
+  }
+}
+
 TEST(GroundShade, OtherTilesStayAsTheyWere) {
   GroundShade shade(width, height, GroundShown::all);
   shade.set_stage(light_at(above), stage);

@@ -101,6 +101,19 @@ TEST(StageCover, MovesTheLightSmoothly) {
 }
 
 // What the picture does not show needs no shadow, and does not make those of the rest coarse.
+// The middle of the light is that of the body, so that there is no way in which it would have to move.
+TEST(StageCover, HoldsABodyThatGrowsAroundTheLight) {
+  const Stage stage = stage_with(1);
+  const StageCover cover(stage, to_light);
+  DrawList list = list_with({{0, 0, 0}});
+  list.camera.eye = Vec3(0, 10, 20);
+  for (float& value : list.positions[0]) value *= 12;
+  const StageCover::Frame frame = cover.at(stage.meshes, list);
+  EXPECT_EQ(frame.light_center, cover.at_rest().light_center);
+  EXPECT_GT(frame.light_radius, cover.at_rest().light_radius);
+  EXPECT_GE(frame.light_radius, 0.5 * 12 * edge);
+}
+
 TEST(StageCover, LeavesOutWhatIsNotSeen) {
   const Stage stage = stage_with(2);
   const StageCover cover(stage, to_light);

@@ -60,6 +60,14 @@ TEST(SkinReport, MeasuresHowMuchMoreASkinStretchesThanItsElements) {
   skin[1] = lowest;
   const Positions twice = 2 * mesh.rest;
   EXPECT_NEAR(skin_excess(drawn, skin_positions(drawn, mesh, twice), mesh, twice).value_or(0), 1, 0.3);
+
+  // With a limit, the edges that it lists tell first whether there is anything to measure.
+  std::vector<DrawnBody> limited = {drawn};
+  limit_stretch(limited);
+  ASSERT_TRUE(limited[0].limit);
+  EXPECT_FALSE(skin_excess(limited[0], skin, mesh, mesh.rest));
+  skin[1] -= 0.4f;
+  EXPECT_EQ(skin_excess(limited[0], skin, mesh, mesh.rest), skin_excess(drawn, skin, mesh, mesh.rest));
 }
 
 // Shards are made by moving points that lie outside away from what they follow.

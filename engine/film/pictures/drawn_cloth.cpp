@@ -11,7 +11,7 @@ namespace supple {
 namespace {
 
 // Tells whether a cloth is drawn with yarns where the scene does not say. An elastic sheet has none. Those of a surface
-// that goes round would break where the flat coordinates along which they run change their axis.
+// that goes round would be wider where it widens, and break at its seams.
 bool shows_yarns(const BodyDef& body) {
   const bool is_woven = !body.cloth->fabric || std::holds_alternative<Woven>(body.cloth->fabric->fabric.membrane);
   return is_woven && body.cloth->surface.empty();

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <queue>
+#include <tuple>
 #include <utility>
 
 #include "base/disjoint_sets.h"
-#include "base/error.h"
 
 namespace supple {
 namespace {
@@ -24,20 +25,29 @@ struct Surface {
 
   Surface(const Positions& at, const Triangles& of)
       : points(at), triangles(of), normals(of.rows(), 3), beside(std::size_t(of.rows()), {-1, -1, -1}) {
-    std::map<std::pair<std::int32_t, std::int32_t>, std::pair<std::int32_t, int>> first_at;  // by the ends of an edge
+    struct Side {
+      std::int32_t low, high, triangle;  // the ends of the edge
+      int place;                         // of the edge in its triangle
+    };
+    std::vector<Side> sides;
     for (std::int32_t t = 0; t < of.rows(); ++t) {
       const Vec3 normal = (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0));
       const double twice = normal.norm();
       normals.row(t) = (twice > 0 ? Vec3(normal / twice) : Vec3(Vec3::Zero())).transpose();
       area.push_back(0.5 * twice);
       for (int k = 0; k < 3; ++k) {
-        const auto [first, added] = first_at.try_emplace(std::minmax({of(t, k), of(t, (k + 1) % 3)}), t, k);
-        if (added) continue;
-        const auto [other, side] = first->second;
-        if (beside[std::size_t(other)][std::size_t(side)] >= 0) continue;  // there are more than two
-        beside[std::size_t(t)][std::size_t(k)] = other;
-        beside[std::size_t(other)][std::size_t(side)] = t;
+        const auto [low, high] = std::minmax({of(t, k), of(t, (k + 1) % 3)});
+        sides.push_back({low, high, t, k});
       }
+    }
+    std::ranges::sort(sides, {},
+                      [](const Side& side) { return std::tuple(side.low, side.high, side.triangle, side.place); });
+    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+      const Side &one = sides[i], &other = sides[i + 1];
+      if (one.low != other.low || one.high != other.high) continue;
+      beside[std::size_t(one.triangle)][std::size_t(one.place)] = other.triangle;
+      beside[std::size_t(other.triangle)][std::size_t(other.place)] = one.triangle;
+      while (i + 1 < sides.size() && sides[i + 1].low == one.low && sides[i + 1].high == one.high) ++i;
     }
   }
 
@@ -80,18 +90,28 @@ std::vector<char> find_walls(const Surface& surface, int axis) {
   return wall;
 }
 
+// Tells of each triangle to which wall it belongs, -1 for none, and the how many-th of its triangles it is.
+struct WallNumbers {
+  std::vector<std::int32_t> wall, place;
+};
+
 // Lays a wall flat.
 class Wall {
  public:
-  Wall(const Surface& surface, int axis, std::vector<std::int32_t> own)
-      : surface_(surface), axis_(axis), own_(std::move(own)), number_(std::size_t(surface.count()), -1) {
-    for (std::size_t i = 0; i < own_.size(); ++i) number_[std::size_t(own_[i])] = std::int32_t(i);
-  }
+  // own: its triangles, which `numbers` has as those of the wall `name`.
+  Wall(const Surface& surface, int axis, std::vector<std::int32_t> own, const WallNumbers& numbers, std::int32_t name)
+      : surface_(surface), axis_(axis), own_(std::move(own)), numbers_(numbers), name_(name) {}
 
-  void lay(const Vec3& origin, std::vector<LaidTriangle>& result) {
+  // Returns false, and lays nothing, where the wall is too large, or its triangles are too thin for the sum of squares.
+  bool lay(const Vec3& origin, std::vector<LaidTriangle>& result) {
+    constexpr std::size_t most_nodes = 500'000;
     const std::int32_t seed = front();
     join_corners(seed);
-    const Eigen::VectorXd across = solve(true), along = solve(false);
+    if (nodes_ > most_nodes) return false;
+    Factor factor;
+    const std::optional<Eigen::VectorXd> found_across = solve(true, factor), found_along = solve(false, factor);
+    if (!found_across || !found_along) return false;
+    const Eigen::VectorXd &across = *found_across, &along = *found_along;
     const PrintAxes axes = print_axes(surface_.normal(seed));
     const Vec3 there = surface_.corner(seed, 0) - origin;
     const std::size_t at = node(seed, 0);
@@ -105,9 +125,12 @@ class Wall {
                                                  (is_turned ? Eigen::Vector2d(v, u) : Eigen::Vector2d(u, v));
       }
     }
+    return true;
   }
 
  private:
+  using Factor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
+
   // Returns the triangle in the middle of the front: of what is in front of the axis, or else beside it.
   std::int32_t front() const {
     constexpr double of_middle = 0.5;
@@ -138,9 +161,7 @@ class Wall {
     return around ? Vec3(along.cross(normal)) : along;
   }
 
-  std::size_t node(std::int32_t t, int k) const {
-    return node_[3 * std::size_t(number_[std::size_t(t)]) + std::size_t(k)];
-  }
+  std::size_t node(std::int32_t t, int k) const { return node_[3 * at(t) + std::size_t(k)]; }
 
   // Joins the corners of triangles at all edges but those of the seams. Each triangle is reached from the front on the
   // shortest way from middle to middle (Dijkstra 1959). What lies between these ways is a seam, as far as it goes from
@@ -216,40 +237,48 @@ class Wall {
     }
   }
 
-  // Finds the numbers at the nodes whose slope is nearest to one in the asked direction and to nothing across it.
-  Eigen::VectorXd solve(bool around) const {
+  // Finds the numbers at the nodes whose slope is nearest to one in the asked direction and to nothing across it. The
+  // pattern of the matrix is the same for both directions. Returns nothing where rounding leaves no solution.
+  std::optional<Eigen::VectorXd> solve(bool around, Factor& factor) const {
     constexpr double across_weight = 4, least = 1e-9;
+    constexpr double thinnest = 1e-7;  // twice the area over the square of the longest edge
     std::vector<Eigen::Triplet<double>> entries;
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(Eigen::Index(nodes_));
-    double mean = 0;
-    for (const std::int32_t t : own_) mean += surface_.area[std::size_t(t)] / double(own_.size());
+    const auto size = static_cast<Eigen::Index>(nodes_);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
     for (const std::int32_t t : own_) {
       const double area = surface_.area[std::size_t(t)];
       const Vec3 wanted = direction(t, around), other = direction(t, !around), normal = surface_.normal(t);
-      for (int k = 0; k < 3; ++k) entries.emplace_back(int(node(t, k)), int(node(t, k)), least);
-      if (!(area > 1e-9 * mean) || wanted.isZero(0)) continue;
-      std::array<Vec3, 3> slope;  // of the function that is 1 at a corner and 0 at the others [1/m]
+      double longest = 0;
       for (int k = 0; k < 3; ++k)
-        slope[std::size_t(k)] =
-            normal.cross(surface_.corner(t, (k + 2) % 3) - surface_.corner(t, (k + 1) % 3)) / (2 * area);
+        longest = std::max(longest, (surface_.corner(t, (k + 1) % 3) - surface_.corner(t, k)).squaredNorm());
+      const bool counts = 2 * area > thinnest * longest && !wanted.isZero(0);
+      std::array<Vec3, 3> slope;  // of the function that is 1 at a corner and 0 at the others [1/m]
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 opposite = surface_.corner(t, (k + 2) % 3) - surface_.corner(t, (k + 1) % 3);
+        slope[std::size_t(k)] = counts ? Vec3(normal.cross(opposite) / (2 * area)) : Vec3(Vec3::Zero());
+      }
       for (std::size_t a = 0; a < 3; ++a) {
-        right[Eigen::Index(node(t, int(a)))] += area * wanted.dot(slope[a]);
-        for (std::size_t b = 0; b < 3; ++b)
-          entries.emplace_back(int(node(t, int(a))), int(node(t, int(b))),
-                               area * (wanted.dot(slope[a]) * wanted.dot(slope[b]) +
-                                       across_weight * other.dot(slope[a]) * other.dot(slope[b])));
+        const auto row = static_cast<int>(node(t, int(a)));
+        right[row] += area * wanted.dot(slope[a]);
+        for (std::size_t b = 0; b < 3; ++b) {
+          const double value = area * (wanted.dot(slope[a]) * wanted.dot(slope[b]) +
+                                       across_weight * other.dot(slope[a]) * other.dot(slope[b]));
+          entries.emplace_back(row, int(node(t, int(b))), value + (a == b ? least : 0));
+        }
       }
     }
-    const auto size = static_cast<Eigen::Index>(nodes_);
     Eigen::SparseMatrix<double> matrix(size, size);
     matrix.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
-    SUPPLE_CHECK(factor.info(), ==, Eigen::Success);  // the sum of squares with a small diagonal is positive definite
-    return factor.solve(right);
+    if (factor.rows() == 0) factor.analyzePattern(matrix);
+    factor.factorize(matrix);
+    if (factor.info() != Eigen::Success) return std::nullopt;
+    Eigen::VectorXd result = factor.solve(right);
+    if (!result.allFinite()) return std::nullopt;
+    return result;
   }
 
-  std::size_t at(std::int32_t t) const { return std::size_t(number_[std::size_t(t)]); }
-  bool is_own(std::int32_t t) const { return t >= 0 && number_[std::size_t(t)] >= 0; }
+  std::size_t at(std::int32_t t) const { return std::size_t(numbers_.place[std::size_t(t)]); }
+  bool is_own(std::int32_t t) const { return t >= 0 && numbers_.wall[std::size_t(t)] == name_; }
   int place_in(std::int32_t t, std::int32_t vertex) const {
     return surface_.triangles(t, 0) == vertex ? 0 : surface_.triangles(t, 1) == vertex ? 1 : 2;
   }
@@ -262,9 +291,10 @@ class Wall {
 
   const Surface& surface_;
   int axis_;
-  std::vector<std::int32_t> own_;     // triangles
-  std::vector<std::int32_t> number_;  // by triangle of the surface: its place in own_, or -1
-  std::vector<std::size_t> node_;     // by corner of own triangles: what is joined has one number
+  std::vector<std::int32_t> own_;  // triangles
+  const WallNumbers& numbers_;
+  std::int32_t name_;
+  std::vector<std::size_t> node_;  // by corner of own triangles: what is joined has one number
   std::size_t nodes_ = 0;
 };
 
@@ -276,33 +306,39 @@ PrintAxes print_axes(const Vec3& normal) {
   return {faced == 0 ? 2 : 0, faced == 1 ? 2 : 1};
 }
 
-std::vector<LaidTriangle> flat_triangles(const Positions& points, const Triangles& triangles) {
+std::vector<LaidTriangle> laid_triangles(const Positions& points, const Triangles& triangles) {
   const Surface surface(points, triangles);
   const Vec3 origin = bounds_of(points).lower;
   const int axis = axis_of(surface);
-  const std::vector<char> wall = find_walls(surface, axis);
+  const std::vector<char> in_wall = find_walls(surface, axis);
   const PrintAxes of_caps = print_axes(Vec3::Unit(axis));
   std::vector<LaidTriangle> result(std::size_t(surface.count()));
-  std::vector<char> is_seen(std::size_t(surface.count()), 0);
+  const auto lay_cap = [&](std::int32_t t) {
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 there = surface.corner(t, k) - origin;
+      result[std::size_t(t)][std::size_t(k)] = {there[of_caps.across], there[of_caps.along]};
+    }
+  };
+  WallNumbers numbers;
+  numbers.wall.assign(std::size_t(surface.count()), -1);
+  numbers.place = numbers.wall;
+  std::int32_t walls = 0;
   for (std::int32_t start = 0; start < surface.count(); ++start) {
-    if (wall[std::size_t(start)] == 0) {
-      for (int k = 0; k < 3; ++k) {
-        const Vec3 there = surface.corner(start, k) - origin;
-        result[std::size_t(start)][std::size_t(k)] = {there[of_caps.across], there[of_caps.along]};
-      }
-      continue;
-    }
-    if (is_seen[std::size_t(start)] != 0) continue;
-    std::vector<std::int32_t> own = {start};
-    is_seen[std::size_t(start)] = 1;
+    if (in_wall[std::size_t(start)] == 0) lay_cap(start);
+    if (in_wall[std::size_t(start)] == 0 || numbers.wall[std::size_t(start)] >= 0) continue;
+    std::vector<std::int32_t> own;
+    const auto take = [&](std::int32_t t) {
+      numbers.wall[std::size_t(t)] = walls;
+      numbers.place[std::size_t(t)] = std::int32_t(own.size());
+      own.push_back(t);
+    };
+    take(start);
     for (std::size_t i = 0; i < own.size(); ++i) {
-      for (const std::int32_t other : surface.beside[std::size_t(own[i])]) {
-        if (other < 0 || wall[std::size_t(other)] == 0 || is_seen[std::size_t(other)] != 0) continue;
-        is_seen[std::size_t(other)] = 1;
-        own.push_back(other);
-      }
+      for (const std::int32_t other : surface.beside[std::size_t(own[i])])
+        if (other >= 0 && in_wall[std::size_t(other)] != 0 && numbers.wall[std::size_t(other)] < 0) take(other);
     }
-    Wall(surface, axis, std::move(own)).lay(origin, result);
+    if (!Wall(surface, axis, own, numbers, walls).lay(origin, result)) std::ranges::for_each(own, lay_cap);
+    ++walls;
   }
   return result;
 }

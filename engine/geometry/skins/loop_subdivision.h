@@ -16,10 +16,10 @@ namespace supple {
 // the skin. The skin's vertices keep their numbers, and new ones follow.
 //
 // An edge is sharp where it has another number of triangles than two, or where the skin's vertices are split along it
-// (Skin::smooth tells of the vertices that were split for their colours alone). Along sharp edges the surface follows a
-// curve that depends on the vertices of that curve alone, so that a seam between two surfaces stays closed. A vertex at
-// which more than two sharp edges meet, or two at an angle, stays where it is. Colours, patterns and paint change
-// evenly along edges.
+// (Skin::smooth tells of the vertices that were split for their colours or their print alone). Along sharp edges the
+// surface follows a curve that depends on the vertices of that curve alone, so that a seam between two surfaces stays
+// closed. A vertex at which more than two sharp edges meet, or two at an angle, stays where it is. Colours, patterns
+// and paint change evenly along edges.
 //
 // vertex_of: mesh vertex by skin vertex. mesh: places of the mesh's vertices at rest, n x 3 [m].
 SurfaceWeights subdivide(Skin& skin, const std::vector<std::int32_t>& vertex_of, const Positions& mesh, int levels);

@@ -19,7 +19,7 @@ std::uint64_t edge_name(std::int32_t a, std::int32_t b) {
   return std::uint64_t(low) << 32 | std::uint64_t(high);
 }
 
-// Returns the normal at each vertex, of unit length or 0. Vertices that colours alone have split share theirs.
+// Returns the normal at each vertex, of unit length or 0. Vertices that share a number of Skin::smooth share theirs.
 Positions vertex_normals(const Skin& skin) {
   const Positions& points = skin.rest.points;
   const Eigen::Index named = skin.smooth.empty() ? points.rows() : 1 + *std::ranges::max_element(skin.smooth);

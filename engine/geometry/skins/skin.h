@@ -35,11 +35,16 @@ TriMesh contour(const Shape& shape, double cell);
 // Makes the skin of a shape: its contour, with the distances to the shape's layers and the ambient occlusion at rest.
 Skin skin_of(const Shape& shape, double cell);
 
+// Says where the squares lie on a part of a surface that does not face about one way: the part is laid flat
+// (flat_charts.h), or each vertex lies where it is along the axes that it faces least, which is enough where squares
+// are not drawn.
+enum class BentPart { laid, projected };
+
 // Makes a skin without layers from triangles over a mesh's vertices. A vertex on a crease of the surface is split into
 // several, so that edges look sharp; vertex_of gives each skin vertex's mesh vertex. square: edge length of the printed
 // pattern's squares [m]; 0 prints no pattern. A part that faces about one way is printed along the two axes that it
-// faces least, and a part that does not is laid flat (flat_charts.h), where seams split vertices too.
+// faces least; where another one is laid flat, seams split vertices too.
 Skin skin_of_surface(const Positions& points, const Triangles& triangles, double square,
-                     std::vector<std::int32_t>& vertex_of);
+                     std::vector<std::int32_t>& vertex_of, BentPart bent = BentPart::laid);
 
 }  // namespace supple

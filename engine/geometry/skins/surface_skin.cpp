@@ -61,7 +61,7 @@ void print_bent_parts(const std::vector<char>& bent, double square, Skin& skin, 
     if (bent[t] != 0) own.push_back(Eigen::Index(t));
   if (own.empty()) return;
   const Triangles triangles = skin.rest.triangles(own, Eigen::all);
-  const std::vector<LaidTriangle> flat = flat_triangles(skin.rest.points, triangles);
+  const std::vector<LaidTriangle> flat = laid_triangles(skin.rest.points, triangles);
   skin.smooth.clear();
   for (std::int32_t v = 0; v < std::int32_t(vertex_of.size()); ++v) skin.smooth.push_back(v);
   std::vector<char> is_used(vertex_of.size(), 0);
@@ -92,7 +92,7 @@ void print_bent_parts(const std::vector<char>& bent, double square, Skin& skin, 
 }  // namespace
 
 Skin skin_of_surface(const Positions& points, const Triangles& triangles, double square,
-                     std::vector<std::int32_t>& vertex_of) {
+                     std::vector<std::int32_t>& vertex_of, BentPart bent) {
   Positions normals(triangles.rows(), 3);
   std::vector<std::vector<Corner>> around(points.rows());
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
@@ -126,7 +126,7 @@ Skin skin_of_surface(const Positions& points, const Triangles& triangles, double
       skin.rest.points.row(static_cast<Eigen::Index>(v)) = points.row(vertex_of[v]);
   };
   place_points();
-  if (square > 0) {
+  if (square > 0 && bent == BentPart::laid) {
     print_bent_parts(is_bent(skin.rest.triangles, axes), square, skin, vertex_of);
     place_points();
   }

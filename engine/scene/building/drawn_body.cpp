@@ -88,7 +88,9 @@ DrawnBody drawn_mesh(const Body& body) {
   const Triangles surface = surface_of(body);
   // The skin is made in the body's own directions, so that the print lies along its edges however the body stands.
   const double printed = square_of(body), square = body.def.cloth && printed == 0 ? 1 : printed;
-  drawn.skin = skin_of_surface(placed.rest * turn_of(body), surface, square, drawn.vertex_of);
+  const bool is_drawn = printed > 0 || body.def.yarn.value_or(0) > 0;
+  drawn.skin = skin_of_surface(placed.rest * turn_of(body), surface, square, drawn.vertex_of,
+                               is_drawn ? BentPart::laid : BentPart::projected);
   if (body.def.cloth) drawn.skin.flat = flat_places(drawn.skin, drawn.vertex_of, square);
   if (printed == 0) drawn.skin.square.clear();
   if (body.def.cloth && body.colors) color_cloth(body, surface, drawn);
