@@ -163,7 +163,7 @@ TEST(FlatCharts, AWallWithAHoleIsUnrolledToo) {
     ASSERT_NEAR(stretch_of(mesh, t, laid[std::size_t(t)]).maxCoeff(), 1, 1e-5);
 }
 
-// Where squares are not drawn, nothing is laid flat and no vertex is split.
+// A skin whose squares are not drawn is not laid flat, so that none of its vertices is split.
 TEST(FlatCharts, ASkinWithoutSquaresHasNoSeam) {
   const Mesh mesh = around_y(
       13, 40, [](double) { return 0.3; }, [](double s) { return 1.2 * s; });

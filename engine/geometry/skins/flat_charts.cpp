@@ -7,10 +7,10 @@
 #include <map>
 #include <optional>
 #include <queue>
-#include <tuple>
 #include <utility>
 
 #include "base/disjoint_sets.h"
+#include "geometry/triangles/triangle_edges.h"
 
 namespace supple {
 namespace {
@@ -25,29 +25,21 @@ struct Surface {
 
   Surface(const Positions& at, const Triangles& of)
       : points(at), triangles(of), normals(of.rows(), 3), beside(std::size_t(of.rows()), {-1, -1, -1}) {
-    struct Side {
-      std::int32_t low, high, triangle;  // the ends of the edge
-      int place;                         // of the edge in its triangle
-    };
-    std::vector<Side> sides;
     for (std::int32_t t = 0; t < of.rows(); ++t) {
       const Vec3 normal = (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0));
       const double twice = normal.norm();
       normals.row(t) = (twice > 0 ? Vec3(normal / twice) : Vec3(Vec3::Zero())).transpose();
       area.push_back(0.5 * twice);
-      for (int k = 0; k < 3; ++k) {
-        const auto [low, high] = std::minmax({of(t, k), of(t, (k + 1) % 3)});
-        sides.push_back({low, high, t, k});
-      }
     }
-    std::ranges::sort(sides, {},
-                      [](const Side& side) { return std::tuple(side.low, side.high, side.triangle, side.place); });
-    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-      const Side &one = sides[i], &other = sides[i + 1];
-      if (one.low != other.low || one.high != other.high) continue;
-      beside[std::size_t(one.triangle)][std::size_t(one.place)] = other.triangle;
-      beside[std::size_t(other.triangle)][std::size_t(other.place)] = one.triangle;
-      while (i + 1 < sides.size() && sides[i + 1].low == one.low && sides[i + 1].high == one.high) ++i;
+    // Of an edge of more than two triangles, the first two are beside each other.
+    const std::vector<TriangleEdge> edges = sorted_edges(of);
+    for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+      const TriangleEdge &one = edges[i], &other = edges[i + 1];
+      const auto is_same = [&one](const TriangleEdge& edge) { return edge.low == one.low && edge.high == one.high; };
+      if (!is_same(other)) continue;
+      beside[std::size_t(one.triangle)][std::size_t(one.side)] = other.triangle;
+      beside[std::size_t(other.triangle)][std::size_t(other.side)] = one.triangle;
+      while (i + 1 < edges.size() && is_same(edges[i + 1])) ++i;
     }
   }
 
