@@ -11,8 +11,8 @@
 #include "app/bench/sections.h"
 #include "app/bench/touching_film.h"
 #include "app/bench/touching_tables.h"
+#include "app/bench/world_crossings.h"
 #include "film/plan/shipped_files.h"
-#include "geometry/triangles/edge_crossings.h"
 #include "scene/reading/scene_reader.h"
 
 namespace supple {
@@ -56,46 +56,6 @@ struct LayersSeen {
   double kinetic = 0;                 // energy at the end, over its largest
   double creep = 0;                   // the longest way of a vertex in the last frames, over its body's size
   bool failed = false;
-};
-
-// Joins the surfaces of all bodies of a world, and counts where they cross.
-class WorldCrossings {
- public:
-  explicit WorldCrossings(TouchingFilm& film) : film_(film), crossings_(surfaces(film), joined_places(film)) {}
-
-  EdgeCrossings::Count count() { return crossings_.count(joined_places(film_)); }
-
- private:
-  static Positions joined_places(TouchingFilm& film) {
-    Eigen::Index rows = 0;
-    for (std::size_t b = 0; b < film.world().size(); ++b) rows += film.world().body(b).model().vertices;
-    Positions all(rows, 3);
-    Eigen::Index at = 0;
-    for (std::size_t b = 0; b < film.world().size(); ++b) {
-      const Positions& x = film.world().body(b).state().x;
-      all.middleRows(at, x.rows()) = x;
-      at += x.rows();
-    }
-    return all;
-  }
-
-  static Triangles surfaces(TouchingFilm& film) {
-    Eigen::Index rows = 0;
-    for (std::size_t b = 0; b < film.world().size(); ++b) rows += film.world().body(b).model().surface.rows();
-    Triangles all(rows, 3);
-    Eigen::Index at = 0;
-    std::int32_t first = 0;
-    for (std::size_t b = 0; b < film.world().size(); ++b) {
-      const Model& model = film.world().body(b).model();
-      all.middleRows(at, model.surface.rows()) = model.surface.array() + first;
-      at += model.surface.rows();
-      first += model.vertices;
-    }
-    return all;
-  }
-
-  TouchingFilm& film_;
-  EdgeCrossings crossings_;
 };
 
 // Returns the longest way of a vertex from the places `before`, over the size of its body.

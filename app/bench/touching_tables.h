@@ -20,6 +20,9 @@ ReportTable stack_table(const BenchSetting& setting);
 ReportTable touching_cost_table(const BenchSetting& setting);
 // touching_layers.cpp
 ReportTable layers_table(const BenchSetting& setting);
+// touching_self.cpp
+ReportTable self_table(const BenchSetting& setting);
+ReportTable self_question_table(const BenchSetting& setting);
 // touching_row.cpp
 struct RowOfBodies {
   ReportTable table;

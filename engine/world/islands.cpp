@@ -191,7 +191,7 @@ Islands::Own& Islands::own_of(std::size_t body) {
   own.structure = model.structure;
   own.moving = std::make_unique<MovingSurface>(model.surface, model.rest);
   if (model.parts.front().solid) {
-    own.surface = std::make_unique<OwnSurface>(tetrahedra_of(model), model.surface, model.rest, model.size);
+    own.surface = std::make_unique<OwnSurface>(tetrahedra_of(model), *own.moving, model.rest, model.size);
   } else {
     own.sheet = std::make_unique<OwnSheet>(*own.moving, model.rest, joined_by_seams(model.seams.pairs));
   }
@@ -201,20 +201,21 @@ Islands::Own& Islands::own_of(std::size_t body) {
 
 bool Islands::begins_in_itself(std::size_t body, const Positions& q) {
   const Own& own = own_of(body);
+  if (own.sheet == nullptr) return own.surface->overlaps(*own.moving, q);
   own.moving->set_end(q);
   own.moving->set_start(q);
-  return own.sheet != nullptr ? own.sheet->overlaps(*own.moving, q) : own.surface->overlaps(*own.moving, q);
+  return own.sheet->overlaps(*own.moving, q);
 }
 
 bool Islands::comes_through_itself(std::size_t body, const Positions& q) {
   const Zone zone("touching itself");
   const Own& own = own_of(body);
   const Positions& x = bodies_[body]->state().x;
+  const Vec3 carried = (x - q).colwise().mean().transpose();
+  if (own.sheet == nullptr) return own.surface->touches(*own.moving, q, x, carried);
   own.moving->set_start(q);
   own.moving->set_end(x);
-  const Vec3 carried = (x - q).colwise().mean().transpose();
-  return own.sheet != nullptr ? own.sheet->touches(*own.moving, q, x, carried)
-                              : own.surface->touches(*own.moving, q, x, carried);
+  return own.sheet->touches(*own.moving, q, x, carried);
 }
 
 int Islands::step(const std::vector<std::size_t>& island) {

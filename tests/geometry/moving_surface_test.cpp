@@ -427,8 +427,9 @@ TEST(MovingSurface, PairsItselfWhereItComesNear) {
   const Vec3 carried(4, 5, 6);
   const Motion motion = dented_ball(numbers, carried);
   const double margin = 0.4;
+  MovingSurface::SolidParts none = motion.surface.solid_parts([](std::int32_t, std::vector<std::int32_t>&) {});
   std::set<std::pair<std::int32_t, std::int32_t>> found;
-  motion.surface.any_own_pair(margin, carried, 2, [&](std::int32_t v, std::int32_t t) {
+  motion.surface.any_own_pair(none, motion.start, motion.end, margin, carried, 2, [&](std::int32_t v, std::int32_t t) {
     EXPECT_TRUE(found.emplace(v, t).second) << "twice";
     return false;
   });
@@ -451,12 +452,38 @@ TEST(MovingSurface, PairsItselfWhereItComesNear) {
   EXPECT_GT(near, 100u);
   EXPECT_GT(double(paired), 0.7 * double(near)) << "those of one leaf are not paired";
   EXPECT_LT(double(found.size()), 0.8 * double(motion.start.rows() * motion.rest.triangles.rows()));
-  EXPECT_FALSE(motion.surface.any_own_pair(margin, carried, -2, [](std::int32_t, std::int32_t) { return true; }))
+  EXPECT_FALSE(motion.surface.any_own_pair(none, motion.start, motion.end, margin, carried, -2,
+                                           [](std::int32_t, std::int32_t) { return true; }))
       << "all cosines are above -2";
   int calls = 0;
-  EXPECT_TRUE(
-      motion.surface.any_own_pair(margin, carried, 2, [&](std::int32_t, std::int32_t) { return ++calls == 3; }));
+  EXPECT_TRUE(motion.surface.any_own_pair(none, motion.start, motion.end, margin, carried, 2,
+                                          [&](std::int32_t, std::int32_t) { return ++calls == 3; }));
   EXPECT_EQ(calls, 3);
+}
+
+TEST(MovingSurface, PairsItselfWithoutWhatIsSolidParts) {
+  Numbers numbers(11);
+  const Vec3 carried(4, 5, 6);
+  const Motion motion = dented_ball(numbers, carried);
+  using Pairs = std::set<std::pair<std::int32_t, std::int32_t>>;
+  const auto is_left_out = [](std::int32_t v, std::int32_t t) { return (3 * v + 5 * t) % 7 < 3; };
+  const auto pairs_without = [&](const MovingSurface::TrianglesOf& triangles_of) {
+    Pairs found;
+    MovingSurface::SolidParts parts = motion.surface.solid_parts(triangles_of);
+    motion.surface.any_own_pair(parts, motion.start, motion.end, 0.4, carried, 0.5,
+                                [&](std::int32_t v, std::int32_t t) { return found.emplace(v, t), false; });
+    return found;
+  };
+  Pairs kept = pairs_without([](std::int32_t, std::vector<std::int32_t>&) {});
+  const std::size_t all = kept.size();
+  std::erase_if(kept, [&](const auto& pair) { return is_left_out(pair.first, pair.second); });
+  EXPECT_EQ(pairs_without([&](std::int32_t v, std::vector<std::int32_t>& triangles) {
+              for (std::int32_t t = 0; t < motion.rest.triangles.rows(); ++t)
+                if (is_left_out(v, t)) triangles.insert(triangles.begin(), 2, t);
+            }),
+            kept);
+  EXPECT_GT(kept.size(), 100u);
+  EXPECT_LT(kept.size(), all);
 }
 
 TEST(MovingSurface, HasTheBoxesOfItsVertices) {

@@ -339,8 +339,8 @@ std::string squeezed_ring(const char* self) {
 
 bool overlaps_itself(const Played& played) {
   const Model& model = played.world.body(0).model();
-  const MovingSurface surface = surface_now(played);
-  return OwnSurface(tetrahedra_of(model), model.surface, model.rest, model.size).overlaps(surface, surface.start());
+  MovingSurface surface = surface_now(played);
+  return OwnSurface(tetrahedra_of(model), surface, model.rest, model.size).overlaps(surface, surface.start());
 }
 
 TEST(TouchingWorlds, ABodyTouchesItself) {

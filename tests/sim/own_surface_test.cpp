@@ -17,8 +17,8 @@ constexpr double radius = 0.2, thickness = 0.1, turns = 2 * 3.14159265358979 + 0
 struct Bar {
   TetMesh mesh = box_mesh(Vec3(turns * radius, thickness, thickness), {40, 3, 3});
   Triangles triangles = boundary_faces(mesh.tets);
-  OwnSurface own{mesh.tets, triangles, mesh.rest, bounds_of(mesh.rest).diagonal()};
   MovingSurface moving{triangles, mesh.rest};
+  OwnSurface own{mesh.tets, moving, mesh.rest, bounds_of(mesh.rest).diagonal()};
 
   // Returns the bar rolled up, with so much room between its beginning and its end, which lies outside [m].
   Positions rolled(double gap) const {

@@ -142,10 +142,13 @@ std::optional<std::int32_t> ElementPaths::element_at_end(const Positions& x, std
   return std::nullopt;
 }
 
+std::span<const std::int32_t> ElementPaths::neighbours(std::int32_t vertex) const {
+  const std::int32_t first = begin_[std::size_t(vertex)], last = begin_[std::size_t(vertex) + 1];
+  return {neighbours_.data() + first, std::size_t(last - first)};
+}
+
 bool ElementPaths::are_neighbours(std::int32_t a, std::int32_t b) const {
-  const auto first = neighbours_.begin() + begin_[std::size_t(a)],
-             last = neighbours_.begin() + begin_[std::size_t(a) + 1];
-  return a == b || std::binary_search(first, last, b);
+  return a == b || std::ranges::binary_search(neighbours(a), b);
 }
 
 // Returns six times the volume.

@@ -126,13 +126,42 @@ class MovingSurface {
   // groups of up to four of its triangles move.
   bool may_meet(const MovingSurface& other, double margin, const Vec3& carried) const;
 
-  // Looks for vertices of the surface and triangles of its own that may come nearer than `margin` [m] to each other.
-  // Calls visit(vertex, triangle) for each pair whose boxes do, until one call returns true; tells whether one did.
-  // Left out are pairs of a vertex and a triangle of one leaf of the tree, and pairs from two parts of the surface
-  // between whose normals at the start all cosines are above `same_way`. Otherwise, a smooth surface would meet itself
-  // at each vertex.
+  // Holds what any_own_pair() must know of a solid's parts, which are the nodes of the tree: the pairs of a vertex and
+  // a triangle that it leaves out, such as neighbours.
+  struct SolidParts {
+    std::vector<std::int32_t>
+        begin;  // by node: where the pairs of leaves begin in which it is the earlier; and the end
+    std::vector<std::int32_t> later;  // by pair of leaves: that with the larger index, ascending
+    // By pair of leaves: bit `width` i + c is set for vertex i of the one and triangle c of the other that are left
+    // out. In the first mask, the vertex is of the earlier leaf. Bits of what does not exist are set, too.
+    std::vector<std::array<std::uint64_t, 2>> masks;
+    // By node: the corners of a leaf's triangles, as places in own_vertices_.
+    std::vector<std::array<std::int32_t, 3 * width>> corners;
+
+    // The rest is known for one query, in the frame that moves by `carried`, and is room that is kept for the next one.
+    // Holds where a vertex is at q, and the box in which it moves; the fourth number is none.
+    struct Path {
+      Eigen::Array4d start, lower, upper;
+    };
+    std::vector<Path> paths;  // by place in own_vertices_
+    struct Family {
+      Boxes swept, normals;  // around the ways of what a node's children hold, and around its unit normals at q
+    };
+    std::vector<Family> families;  // by node
+  };
+  // Puts the triangles that are left out beside a vertex into an empty list, in any order; one may come twice.
+  using TrianglesOf = std::function<void(std::int32_t vertex, std::vector<std::int32_t>& triangles)>;
+  SolidParts solid_parts(const TrianglesOf& triangles_of) const;
+
+  // Looks for vertices of the surface and triangles of its own that may come nearer than `margin` [m] to each other
+  // while the surface moves from q to x, n x 3 [m]; the places that were set do not matter. Calls visit(vertex,
+  // triangle) for each pair whose boxes do, until one call returns true; tells whether one did. Left out are, beside
+  // the pairs that are listed, those of a vertex and a triangle of one leaf of the tree, and pairs from two parts of
+  // the surface between whose normals at the start all cosines are above `same_way`. Otherwise, a smooth surface would
+  // meet itself at each vertex.
   using VisitPair = std::function<bool(std::int32_t vertex, std::int32_t triangle)>;
-  bool any_own_pair(double margin, const Vec3& carried, double same_way, const VisitPair& visit) const;
+  bool any_own_pair(SolidParts& parts, const Positions& q, const Positions& x, double margin, const Vec3& carried,
+                    double same_way, const VisitPair& visit) const;
 
   // Holds what any_own_triangles() must know of a sheet's parts, which are the nodes of the tree.
   struct SheetParts {
@@ -156,6 +185,7 @@ class MovingSurface {
   bool any_own_triangles(SheetParts& parts, double margin, const Vec3& carried, const VisitTriangles& visit) const;
 
   const Triangles& triangles() const { return triangles_; }
+  std::span<const std::int32_t> around(std::int32_t vertex) const;  // the triangles at a vertex
   const Positions& start() const { return start_.x; }
   const Bounds& bounds_at_start() const { return start_.bounds; }
   const Bounds& bounds_at_end() const { return end_.bounds; }
@@ -181,14 +211,15 @@ class MovingSurface {
   struct OwnSearch;    // own_pairs.cpp
   struct SheetSearch;  // own_triangles.cpp
 
-  std::array<Boxes::Lanes, 3> unit_normals(const Pose& pose, const Node& leaf) const;
+  using Corners = std::array<std::array<Boxes::Lanes, 3>, 3>;  // of a leaf's triangles, by corner and axis
+  Corners corners(const Positions& x, const Node& leaf) const;
+  static std::array<Boxes::Lanes, 3> unit_normals(const Corners& corner);
   void find_normals(const Pose& pose, SheetParts::Normals& of) const;
   std::int32_t add_node(const TriangleTree& tree, std::int32_t from);
   void list_triangles_around();
   void list_own_vertices();
   void set(Pose& pose, const Positions& x);
 
-  std::span<const std::int32_t> around(std::int32_t vertex) const;
   Vec3 corner(const Pose& pose, std::int32_t t, int k) const { return pose.x.row(triangles_(t, k)); }
   Vec3 unit_normal(const Pose& pose, std::int32_t t) const;
   Vec3 edge_normal(const Pose& pose, std::int32_t a, std::int32_t b) const;

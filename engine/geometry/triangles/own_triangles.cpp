@@ -190,17 +190,22 @@ struct MovingSurface::SheetSearch {
   }
 };
 
-// Returns the unit normals of a leaf's triangles, by axis; lanes without a triangle have that of the first one.
-std::array<MovingSurface::Boxes::Lanes, 3> MovingSurface::unit_normals(const Pose& pose, const Node& leaf) const {
-  using Lanes = Boxes::Lanes;
-  std::array<std::array<Lanes, 3>, 3> corner;  // by corner and axis
+// Returns the corners of a leaf's triangles; lanes without a triangle have those of the first one.
+MovingSurface::Corners MovingSurface::corners(const Positions& x, const Node& leaf) const {
+  Corners corner;
   for (int c = 0; c < width; ++c) {
     const std::int32_t t = ~leaf.child[std::size_t(c < leaf.count ? c : 0)];
     for (std::size_t k = 0; k < 3; ++k) {
-      const double* place = pose.x.row(triangles_(t, int(k))).data();
+      const double* place = x.row(triangles_(t, int(k))).data();
       for (std::size_t axis = 0; axis < 3; ++axis) corner[k][axis][c] = place[axis];
     }
   }
+  return corner;
+}
+
+// Returns the unit normals of triangles, by axis; zero for those without area.
+std::array<MovingSurface::Boxes::Lanes, 3> MovingSurface::unit_normals(const Corners& corner) {
+  using Lanes = Boxes::Lanes;
   std::array<Lanes, 3> one, other;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     one[axis] = corner[1][axis] - corner[0][axis];
@@ -222,7 +227,7 @@ void MovingSurface::find_normals(const Pose& pose, SheetParts::Normals& of) cons
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     const Node& node = nodes_[n];
     if (node.is_leaf()) {
-      normals[n].lower = normals[n].upper = unit_normals(pose, node);
+      normals[n].lower = normals[n].upper = unit_normals(corners(pose.x, node));
       continue;
     }
     for (int c = 0; c < width; ++c) {

@@ -45,11 +45,10 @@ std::vector<BodyDepth> bodies_in_themselves(const std::vector<Body>& bodies, con
     if (!meets_itself(bodies[b].def) || mesh.tets.rows() == 0) continue;
     const Triangles triangles = boundary_faces(mesh.tets);
     const double size = size_of(bodies[b]);
-    const OwnSurface own(mesh.tets, triangles, mesh.rest, size);
     MovingSurface moving(triangles, mesh.rest);
-    moving.set_end(points[b]);
-    moving.set_start(points[b]);
+    const OwnSurface own(mesh.tets, moving, mesh.rest, size);
     if (!own.overlaps(moving, points[b])) continue;
+    moving.set_start(points[b]);
     OwnSurface::Pairs pairs;
     own.find_pairs(moving, points[b], points[b], 0, Vec3::Zero(), pairs);
     BodyDepth deepest{b, b, 0, 0, Vec3::Zero()};

@@ -20,7 +20,7 @@ Vec3 unit_normal(const Positions& x, const Triangles& triangles, std::int32_t t)
 
 }  // namespace
 
-// Holds what pairs of a vertex and a triangle are asked about, over a step.
+// Computes what pairs of a vertex and a triangle are asked about, over a step.
 struct OwnSurface::Motion {
   // Describes how a vertex moves before a triangle.
   struct Approach {
@@ -28,46 +28,43 @@ struct OwnSurface::Motion {
     double nearest;  // a lower bound of their distance on the way [m]
   };
 
+  const Triangles& triangles;
   const Positions &q, &x;
-  Positions start, end;        // the triangles' centroids [m]
-  std::vector<double> radius;  // by triangle: how far its corners are from its centroid at most [m]
-  Positions normal;            // of the triangles at the start
-
-  Motion(const Triangles& triangles, const Positions& from, const Positions& to)
-      : q(from), x(to), start(triangles.rows(), 3), end(triangles.rows(), 3), normal(triangles.rows(), 3) {
-    radius.reserve(std::size_t(triangles.rows()));
-    for (std::int32_t t = 0; t < triangles.rows(); ++t) {
-      double squared = 0;
-      const auto centroid = [&](const Positions& p) {
-        const Vec3 a = p.row(triangles(t, 0)), b = p.row(triangles(t, 1)), c = p.row(triangles(t, 2));
-        const Vec3 middle = (a + b + c) / 3;
-        squared =
-            std::max({squared, (a - middle).squaredNorm(), (b - middle).squaredNorm(), (c - middle).squaredNorm()});
-        return middle;
-      };
-      start.row(t) = centroid(q);
-      end.row(t) = centroid(x);
-      radius.push_back(std::sqrt(squared));
-      normal.row(t) = unit_normal(q, triangles, t);
-    }
-  }
 
   // Returns how a vertex approaches a triangle. What moves by m between two places that are a and b away comes no
   // nearer than (a + b - m) / 2.
   Approach approach(std::int32_t v, std::int32_t t) const {
-    const Vec3 before = (q.row(v) - start.row(t)).transpose(), after = (x.row(v) - end.row(t)).transpose();
+    const Vec3 before = q.row(v).transpose() - centroid(q, t), after = x.row(v).transpose() - centroid(x, t);
     const double motion = (after - before).norm();
-    return {motion, 0.5 * (before.norm() + after.norm() - motion) - radius[std::size_t(t)]};
+    return {motion, 0.5 * (before.norm() + after.norm() - motion) - std::sqrt(std::max(reach(q, t), reach(x, t)))};
   }
   // Returns how far a vertex begins above a triangle's plane, negative behind it [m].
-  double above_at_start(std::int32_t v, std::int32_t t) const { return normal.row(t).dot(q.row(v) - start.row(t)); }
-  double above_at_end(std::int32_t v, std::int32_t t, const Triangles& triangles) const {
-    return unit_normal(x, triangles, t).dot((x.row(v) - end.row(t)).transpose());
+  double above_at_start(std::int32_t v, std::int32_t t) const { return above(q, v, t); }
+  double above_at_end(std::int32_t v, std::int32_t t) const { return above(x, v, t); }
+  Vec3 normal_at_start(std::int32_t t) const { return unit_normal(q, triangles, t); }
+
+ private:
+  Vec3 centroid(const Positions& p, std::int32_t t) const {
+    const Vec3 a = p.row(triangles(t, 0)), b = p.row(triangles(t, 1)), c = p.row(triangles(t, 2));
+    return (a + b + c) / 3;
+  }
+  // Returns the largest squared distance of a triangle's corners from its centroid [m^2].
+  double reach(const Positions& p, std::int32_t t) const {
+    const Vec3 middle = centroid(p, t);
+    double squared = 0;
+    for (int k = 0; k < 3; ++k)
+      squared = std::max(squared, (p.row(triangles(t, k)).transpose() - middle).squaredNorm());
+    return squared;
+  }
+  double above(const Positions& p, std::int32_t v, std::int32_t t) const {
+    return unit_normal(p, triangles, t).dot(p.row(v).transpose() - centroid(p, t));
   }
 };
 
-OwnSurface::OwnSurface(Tetrahedra tets, Triangles triangles, const Positions& rest, double size)
-    : paths_(std::move(tets), triangles, rest), triangles_(std::move(triangles)), centroids_(triangles_.rows(), 3) {
+OwnSurface::OwnSurface(Tetrahedra tets, const MovingSurface& moving, const Positions& rest, double size)
+    : paths_(std::move(tets), moving.triangles(), rest),
+      triangles_(moving.triangles()),
+      centroids_(triangles_.rows(), 3) {
   for (Eigen::Index t = 0; t < triangles_.rows(); ++t) {
     centroids_.row(t) = (rest.row(triangles_(t, 0)) + rest.row(triangles_(t, 1)) + rest.row(triangles_(t, 2))) / 3;
     double radius = 0;
@@ -79,13 +76,12 @@ OwnSurface::OwnSurface(Tetrahedra tets, Triangles triangles, const Positions& re
   edge_ = mean_edge(triangles_, rest);
   shallow_ = usual_depth(size);
   deep_ = std::max(least_deep * size, std::min(most_deep * size, 0.5 * edge_));
-  around_begin_.assign(static_cast<std::size_t>(rest.rows()) + 1, 0);
-  for (Eigen::Index i = 0; i < triangles_.size(); ++i) ++around_begin_[std::size_t(triangles_.data()[i]) + 1];
-  for (std::size_t v = 1; v < around_begin_.size(); ++v) around_begin_[v] += around_begin_[v - 1];
-  around_.resize(std::size_t(triangles_.size()));
-  std::vector<std::int32_t> next(around_begin_.begin(), around_begin_.end() - 1);
-  for (std::int32_t t = 0; t < triangles_.rows(); ++t)
-    for (int k = 0; k < 3; ++k) around_[std::size_t(next[std::size_t(triangles_(t, k))]++)] = t;
+  parts_ = moving.solid_parts([&](std::int32_t v, std::vector<std::int32_t>& found) {
+    for (const std::int32_t neighbour : paths_.neighbours(v)) {
+      const std::span<const std::int32_t> around = moving.around(neighbour);
+      found.insert(found.end(), around.begin(), around.end());
+    }
+  });
 }
 
 double OwnSurface::most_cosine(double above) const { return above < -shallow_ ? against : same_way; }
@@ -102,10 +98,9 @@ bool OwnSurface::are_near_at_rest(std::int32_t a, std::int32_t b, double distanc
 }
 
 // Returns the unit vector in which the surface faces at a vertex: along the sum of the areas of the triangles there.
-Vec3 OwnSurface::facing(const Positions& x, std::int32_t vertex) const {
+Vec3 OwnSurface::facing(const MovingSurface& moving, const Positions& x, std::int32_t vertex) const {
   Vec3 sum = Vec3::Zero();
-  for (std::int32_t i = around_begin_[std::size_t(vertex)]; i < around_begin_[std::size_t(vertex) + 1]; ++i) {
-    const std::int32_t t = around_[std::size_t(i)];
+  for (const std::int32_t t : moving.around(vertex)) {
     const Vec3 first = x.row(triangles_(t, 0)), second = x.row(triangles_(t, 1)), third = x.row(triangles_(t, 2));
     sum += (second - first).cross(third - first);
   }
@@ -132,37 +127,37 @@ bool OwnSurface::passes(const Positions& q, const Positions& x, std::int32_t ver
   return first_passage(seen, roundoff, 1).has_value();
 }
 
-bool OwnSurface::touches(const MovingSurface& moving, const Positions& q, const Positions& x,
-                         const Vec3& carried) const {
+bool OwnSurface::touches(MovingSurface& moving, const Positions& q, const Positions& x, const Vec3& carried) const {
   constexpr double tangled = 0.01;
   return meets(moving, q, x, carried) && paths_.inverted_share(q) <= tangled;
 }
 
-bool OwnSurface::meets(const MovingSurface& moving, const Positions& q, const Positions& x, const Vec3& carried) const {
-  const Motion motion(triangles_, q, x);
+bool OwnSurface::meets(MovingSurface& moving, const Positions& q, const Positions& x, const Vec3& carried) const {
+  const Motion motion{triangles_, q, x};
   bool may_begin_inside = false;
   const auto comes_through = [&](std::int32_t v, std::int32_t t) {
     const double above = motion.above_at_start(v, t);
-    if (above <= -deep_ || are_neighbours(v, t)) return false;
+    if (above <= -deep_) return false;
     const Motion::Approach approach = motion.approach(v, t);
+    const auto may_touch = [&] { return !(facing(moving, q, v).dot(motion.normal_at_start(t)) > most_cosine(above)); };
     if (above < 0) {
-      may_begin_inside |= approach.nearest <= deep_ && !(facing(q, v).dot(motion.normal.row(t)) > most_cosine(above));
+      may_begin_inside |= approach.nearest <= deep_ && may_touch();
       return false;
     }
-    return approach.nearest <= 0 && motion.above_at_end(v, t, triangles_) < 0 &&
-           !(facing(q, v).dot(motion.normal.row(t)) > same_way) && passes(q, x, v, t) &&
+    return approach.nearest <= 0 && motion.above_at_end(v, t) < 0 && may_touch() && passes(q, x, v, t) &&
            !is_collapsed_around(q, v, t) && !is_collapsed_around(x, v, t);
   };
-  if (moving.any_own_pair(deep_, carried, same_way, comes_through)) return true;
+  if (moving.any_own_pair(parts_, q, x, deep_, carried, same_way, comes_through)) return true;
   if (!may_begin_inside) return false;
   Pairs pairs;
   find_pairs(moving, q, q, 0, Vec3::Zero(), pairs);
+  moving.set_start(q);
   for (std::size_t i = 0; i < pairs.vertices.size(); ++i)
     if (place_around(moving, q, pairs.vertices[i], pairs.of(i))) return true;
   return false;
 }
 
-bool OwnSurface::overlaps(const MovingSurface& moving, const Positions& q) const {
+bool OwnSurface::overlaps(MovingSurface& moving, const Positions& q) const {
   return touches(moving, q, q, Vec3::Zero());
 }
 
@@ -173,13 +168,13 @@ void OwnSurface::find_pairs(const MovingSurface& moving, const Positions& q, con
     double motion;
   };
   std::vector<Pair> found;
-  const Motion motion(triangles_, q, x);
-  moving.any_own_pair(std::max(margin, deep_), carried, same_way, [&](std::int32_t v, std::int32_t t) {
+  const Motion motion{triangles_, q, x};
+  moving.any_own_pair(parts_, q, x, std::max(margin, deep_), carried, same_way, [&](std::int32_t v, std::int32_t t) {
     const double above = motion.above_at_start(v, t);
     if (above <= -deep_) return false;
     const Motion::Approach approach = motion.approach(v, t);
-    if (approach.nearest > (above < 0 ? deep_ : margin) || are_neighbours(v, t)) return false;
-    if (facing(q, v).dot(motion.normal.row(t)) > most_cosine(above)) return false;
+    if (approach.nearest > (above < 0 ? deep_ : margin)) return false;
+    if (facing(moving, q, v).dot(motion.normal_at_start(t)) > most_cosine(above)) return false;
     found.push_back({v, t, approach.motion});
     return false;
   });

@@ -14,21 +14,24 @@
 
 namespace supple {
 
+// One body's surface is asked by one thread at a time.
 class OwnSurface {
  public:
   static constexpr double same_way = 0.5;  // cosine of normals; a point does not touch a face that faces the same way
   static constexpr double against = -0.1;  // the same for a point deeper behind the face than contact presses it, since
                                            // most points near such a face are on the next side of an edge of the body
 
-  // tets, triangles: the body's elements and its boundary. rest: n x 3 [m]; size: the size of the body [m].
-  OwnSurface(Tetrahedra tets, Triangles triangles, const Positions& rest, double size);
+  // tets: the body's elements. moving: its boundary; the other methods take the same one, or one of the same triangles
+  // and rest positions. rest: n x 3 [m]; size: the size of the body [m].
+  OwnSurface(Tetrahedra tets, const MovingSurface& moving, const Positions& rest, double size);
 
   // Tells whether the body touches itself on the way that the surface goes in a step: whether a point is inside when it
   // begins, or comes through a triangle. Returns false for a body that begins tangled, with more than a hundredth of
   // its elements inverted. q, x: start and end, n x 3 [m]; carried: the common motion [m].
-  bool touches(const MovingSurface& moving, const Positions& q, const Positions& x, const Vec3& carried) const;
-  // Tells whether a point is inside at q alone; the surface's start must be there.
-  bool overlaps(const MovingSurface& moving, const Positions& q) const;
+  // moving: its places may be set.
+  bool touches(MovingSurface& moving, const Positions& q, const Positions& x, const Vec3& carried) const;
+  // Tells whether a point is inside at q alone.
+  bool overlaps(MovingSurface& moving, const Positions& q) const;
 
   // Lists vertices with the triangles that each may touch.
   struct Pairs {
@@ -46,7 +49,7 @@ class OwnSurface {
                   const Vec3& carried, Pairs& pairs) const;
 
   // Returns the place of the surface by which a vertex has the shortest way out, if it begins the step inside.
-  // triangles: those that the vertex may touch.
+  // moving: its start must be at q. triangles: those that the vertex may touch.
   std::optional<MovingSurface::Place> place_around(const MovingSurface& moving, const Positions& q, std::int32_t vertex,
                                                    std::span<const std::int32_t> triangles) const;
 
@@ -58,21 +61,21 @@ class OwnSurface {
 
  private:
   struct Motion;
-  bool meets(const MovingSurface& moving, const Positions& q, const Positions& x, const Vec3& carried) const;
+  bool meets(MovingSurface& moving, const Positions& q, const Positions& x, const Vec3& carried) const;
   // Points that are deeper inside than half an edge are left out, within these limits, over the body's size.
   static constexpr double least_deep = 0.006, most_deep = 0.02;
 
   double most_cosine(double above) const;  // largest one at which a point so far above a face may touch it
   bool passes(const Positions& q, const Positions& x, std::int32_t vertex, std::int32_t triangle) const;
   bool is_collapsed_around(const Positions& x, std::int32_t vertex, std::int32_t triangle) const;
-  Vec3 facing(const Positions& x, std::int32_t vertex) const;
+  Vec3 facing(const MovingSurface& moving, const Positions& x, std::int32_t vertex) const;
 
   ElementPaths paths_;
   Triangles triangles_;
-  std::vector<std::int32_t> around_begin_, around_;  // the triangles at each vertex
-  Positions centroids_;                              // of the triangles at rest [m]
-  std::vector<double> radius_;                       // by triangle, from its centroid at rest [m]
-  double edge_ = 0, shallow_ = 0, deep_ = 0;         // [m]
+  mutable MovingSurface::SolidParts parts_;   // without pairs that are_neighbours()
+  Positions centroids_;                       // of the triangles at rest [m]
+  std::vector<double> radius_;                // by triangle, from its centroid at rest [m]
+  double edge_ = 0, shallow_ = 0, deep_ = 0;  // [m]
 };
 
 }  // namespace supple

@@ -140,8 +140,8 @@ void make_surfaces(const Model& model, const StepInputs& inputs, Work& work) {
       surface.own_sheet =
           std::make_unique<OwnSheet>(*surface.moving, rows_of(part, model.rest), joined_by_seams(model, part));
     if (part.solid && surface.own == nullptr)
-      surface.own = std::make_unique<OwnSurface>(elements_of(model, part), surface.triangles, rows_of(part, model.rest),
-                                                 part.size);
+      surface.own =
+          std::make_unique<OwnSurface>(elements_of(model, part), *surface.moving, rows_of(part, model.rest), part.size);
   }
 }
 
