@@ -24,7 +24,7 @@ constexpr int plays = 3, asked_frames = 60;  // of scenes whose bodies do not to
 std::string falling_ears() {
   return "frames = 90\n"
          "[[body]]\nname = \"bunny\"\nshape = \"shapes/bunny.toml\"\nsize = 0.3\nvertices = 4000\ndensity = 1000\n"
-         "turn_deg = [-30, 0, 0]\nmaterial = { model = \"stable-neo-hookean\", young = 3e3, poisson = 0.4 }\n"
+         "turn_deg = [-40, 0, 0]\nmaterial = { model = \"stable-neo-hookean\", young = 4e3, poisson = 0.4 }\n"
          "[[body.handles]]\nname = \"body\"\nselect = { box = [[0, 0, 0], [1, 0.5, 1]] }\n";
 }
 
