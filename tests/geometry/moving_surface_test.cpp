@@ -461,7 +461,7 @@ TEST(MovingSurface, PairsItselfWhereItComesNear) {
   EXPECT_EQ(calls, 3);
 }
 
-TEST(MovingSurface, PairsItselfWithoutWhatIsSolidParts) {
+TEST(MovingSurface, PairsItselfWithoutPairsThatAreLeftOut) {
   Numbers numbers(11);
   const Vec3 carried(4, 5, 6);
   const Motion motion = dented_ball(numbers, carried);
@@ -484,6 +484,36 @@ TEST(MovingSurface, PairsItselfWithoutWhatIsSolidParts) {
             kept);
   EXPECT_GT(kept.size(), 100u);
   EXPECT_LT(kept.size(), all);
+}
+
+// Leaves with fewer than four triangles, triangles that have all their vertices to themselves, and a tree of one leaf.
+TEST(MovingSurface, PairsItselfWithoutPairsThatAreLeftOutInOddLeaves) {
+  for (const int count : {1, 3, 4, 5, 11, 18}) {
+    Triangles triangles(count, 3);
+    Positions x(3 * count, 3);
+    Numbers numbers(count);
+    for (int t = 0; t < count; ++t) {
+      triangles.row(t) << 3 * t, 3 * t + 1, 3 * t + 2;
+      for (int k = 0; k < 3; ++k) x.row(3 * t + k) = numbers.in_cube(1).transpose();
+    }
+    const MovingSurface surface(triangles, x);
+    const auto find = [&](const MovingSurface::TrianglesOf& triangles_of) {
+      MovingSurface::SolidParts parts = surface.solid_parts(triangles_of);
+      std::set<std::pair<std::int32_t, std::int32_t>> found;
+      surface.any_own_pair(parts, x, x, 10, Vec3::Zero(), 2,
+                           [&](std::int32_t v, std::int32_t t) { return found.emplace(v, t), false; });
+      return found;
+    };
+    auto kept = find([](std::int32_t, std::vector<std::int32_t>&) {});
+    EXPECT_EQ(kept.empty(), count <= 4) << count;
+    std::erase_if(kept, [&](const auto& pair) { return (pair.first + pair.second) % 3 == 0; });
+    EXPECT_EQ(find([&](std::int32_t v, std::vector<std::int32_t>& left_out) {
+                for (std::int32_t t = 0; t < count; ++t)
+                  if ((v + t) % 3 == 0) left_out.push_back(t);
+              }),
+              kept)
+        << count;
+  }
 }
 
 TEST(MovingSurface, HasTheBoxesOfItsVertices) {

@@ -29,7 +29,7 @@ class ElementPaths {
 
   // Tells whether two vertices are corners of one element, or the same one.
   bool are_neighbours(std::int32_t a, std::int32_t b) const;
-  std::span<const std::int32_t> neighbours(std::int32_t vertex) const;  // and the vertex itself, ascending
+  std::span<const std::int32_t> neighbours(std::int32_t vertex) const;  // with the vertex itself, ascending
 
   // Tells whether an element at a vertex is collapsed: inverted, or of less than a tenth of its volume at rest. x: n x
   // 3 [m].

@@ -20,7 +20,8 @@
 
 namespace supple {
 
-// Queries may run on any number of threads between two calls that set places, and give the same bits on each.
+// Queries may run on any number of threads between two calls that set places, and give the same bits on each. Each
+// thread needs its own SolidParts or SheetParts where a query takes them.
 //
 // Where a query takes `carried`, this is a motion in which the surface and what is asked about both take part [m].
 // Boxes are compared in the frame that moves by `carried`, so that few triangles need a closer look where all move fast
@@ -127,10 +128,9 @@ class MovingSurface {
   bool may_meet(const MovingSurface& other, double margin, const Vec3& carried) const;
 
   // Holds what any_own_pair() must know of a solid's parts, which are the nodes of the tree: the pairs of a vertex and
-  // a triangle that it leaves out, such as neighbours.
+  // a triangle that it leaves out, such as neighbours. The earlier one of two leaves is that with the smaller index.
   struct SolidParts {
-    std::vector<std::int32_t>
-        begin;  // by node: where the pairs of leaves begin in which it is the earlier; and the end
+    std::vector<std::int32_t> begin;  // by node: where the pairs begin in which it is the earlier leaf; and the end
     std::vector<std::int32_t> later;  // by pair of leaves: that with the larger index, ascending
     // By pair of leaves: bit `width` i + c is set for vertex i of the one and triangle c of the other that are left
     // out. In the first mask, the vertex is of the earlier leaf. Bits of what does not exist are set, too.

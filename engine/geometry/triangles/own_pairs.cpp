@@ -1,6 +1,7 @@
 // Defines how a MovingSurface finds the places at which it may meet itself.
 #include <algorithm>
 
+#include "base/error.h"
 #include "geometry/triangles/moving_boxes.h"
 #include "geometry/triangles/moving_surface.h"
 
@@ -244,11 +245,13 @@ struct MovingSurface::OwnSearch {
 
 bool MovingSurface::any_own_pair(SolidParts& parts, const Positions& q, const Positions& x, double margin,
                                  const Vec3& carried, double same_way, const VisitPair& visit) const {
+  SUPPLE_CHECK(q.rows(), ==, start_.x.rows());
+  SUPPLE_CHECK(x.rows(), ==, start_.x.rows());
   OwnSearch search{*this, parts, margin, carried, same_way, visit};
   search.find_paths(q, x);
   search.find_families();
   const Bounds box = whole_box(parts.families[0].swept);
-  search.margin += roundoff_at(box.lower, box.upper) + 2 * roundoff_at(carried, carried);
+  search.margin = margin + roundoff_at(box.lower, box.upper) + 2 * roundoff_at(carried, carried);
   return search.any();
 }
 

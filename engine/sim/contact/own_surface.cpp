@@ -86,12 +86,6 @@ OwnSurface::OwnSurface(Tetrahedra tets, const MovingSurface& moving, const Posit
 
 double OwnSurface::most_cosine(double above) const { return above < -shallow_ ? against : same_way; }
 
-bool OwnSurface::are_neighbours(std::int32_t vertex, std::int32_t triangle) const {
-  for (int k = 0; k < 3; ++k)
-    if (paths_.are_neighbours(vertex, triangles_(triangle, k))) return true;
-  return false;
-}
-
 bool OwnSurface::are_near_at_rest(std::int32_t a, std::int32_t b, double distance) const {
   const double reach = distance + radius_[std::size_t(a)] + radius_[std::size_t(b)];
   return (centroids_.row(a) - centroids_.row(b)).squaredNorm() <= reach * reach;

@@ -28,7 +28,7 @@ class OwnSurface {
   // Tells whether the body touches itself on the way that the surface goes in a step: whether a point is inside when it
   // begins, or comes through a triangle. Returns false for a body that begins tangled, with more than a hundredth of
   // its elements inverted. q, x: start and end, n x 3 [m]; carried: the common motion [m].
-  // moving: its places may be set.
+  // moving: its start may be changed.
   bool touches(MovingSurface& moving, const Positions& q, const Positions& x, const Vec3& carried) const;
   // Tells whether a point is inside at q alone.
   bool overlaps(MovingSurface& moving, const Positions& q) const;
@@ -53,8 +53,6 @@ class OwnSurface {
   std::optional<MovingSurface::Place> place_around(const MovingSurface& moving, const Positions& q, std::int32_t vertex,
                                                    std::span<const std::int32_t> triangles) const;
 
-  // Tells whether a vertex and a triangle are so near in the mesh that they are not asked whether they touch.
-  bool are_neighbours(std::int32_t vertex, std::int32_t triangle) const;
   // Tells whether two triangles may be within a distance of each other at rest [m], by balls around them.
   bool are_near_at_rest(std::int32_t a, std::int32_t b, double distance) const;
   double edge() const { return edge_; }  // the mean length of the surface's edges at rest [m]
@@ -72,7 +70,7 @@ class OwnSurface {
 
   ElementPaths paths_;
   Triangles triangles_;
-  mutable MovingSurface::SolidParts parts_;   // without pairs that are_neighbours()
+  mutable MovingSurface::SolidParts parts_;   // with pairs that share an element, to leave them out
   Positions centroids_;                       // of the triangles at rest [m]
   std::vector<double> radius_;                // by triangle, from its centroid at rest [m]
   double edge_ = 0, shallow_ = 0, deep_ = 0;  // [m]
