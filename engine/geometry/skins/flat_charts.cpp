@@ -31,7 +31,7 @@ struct Surface {
       normals.row(t) = (twice > 0 ? Vec3(normal / twice) : Vec3(Vec3::Zero())).transpose();
       area.push_back(0.5 * twice);
     }
-    // Of an edge of more than two triangles, the first two are beside each other.
+    // Where more than two triangles share an edge, the first two of them count as neighbours.
     const std::vector<TriangleEdge> edges = sorted_edges(of);
     for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
       const TriangleEdge &one = edges[i], &other = edges[i + 1];
