@@ -206,8 +206,10 @@ void FrameLoop::change_look(const std::vector<std::string>& settings) {
   const Script script = world_.script().with(settings);
   const bool as_elements = script.scene().look.wireframe;
   std::vector<DrawnBody>& drawn = as_elements ? elements_ : skins_;
-  if (drawn.empty())
-    drawn = drawn_bodies(world_.bodies(), {UserCache::of_user(), {}}, as_elements ? DrawnAs::elements : DrawnAs::skin);
+  if (drawn.empty()) {
+    drawn = drawn_bodies(world_.bodies(), {plan_.cache ? UserCache::of_user() : UserCache(), {}},
+                         as_elements ? DrawnAs::elements : DrawnAs::skin);
+  }
   DrawnFilm film(script, world_.bodies(), drawn, world_.colliders(), text_font(script.scene().text));
   drawn_.emplace(std::move(film));
   look_ = script.scene();

@@ -209,8 +209,10 @@ TEST(Completion, KnowsNamesAndChoicesByTheirPlace) {
   Words offered = program.completed({"render", ""});
   EXPECT_EQ(offered.erase("/"), 1u);
   EXPECT_EQ(offered, scenes);
-  for (const auto& entry : std::filesystem::directory_iterator(test::assets / "replays"))
-    scenes.insert(entry.path().stem());
+  for (const auto& entry : std::filesystem::directory_iterator(test::assets / "replays")) {
+    EXPECT_TRUE(scenes.insert(entry.path().stem()).second)
+        << entry << ": a scene has the same name, and is found first";
+  }
   for (const char* verb : {"check", "info", "profile"}) {
     offered = program.completed({verb, ""});
     EXPECT_EQ(offered.erase("/"), 1u) << verb;
