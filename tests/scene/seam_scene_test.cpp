@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <vector>
 
 #include "base/error.h"
 #include "geometry/triangles/triangle_edges.h"
@@ -52,21 +54,33 @@ class SewnPanels : public testing::Test {
 };
 
 TEST_F(SewnPanels, OfDifferentNumbersOfVerticesCloseInTheirTime) {
-  // Implicit midpoint damps nothing, so that what is left swings to and fro.
-  for (const auto& [integrator, most] : {std::pair("backward-euler", 0.01), std::pair("implicit-midpoint", 0.1)}) {
-    World sewn = world({fmt::format("solver.integrator={}", integrator)});
-    const std::vector<SeamPair>& pairs = sewn.body(0).model().seams.pairs;
-    EXPECT_EQ(pairs.size(), 18u);  // the front has nine vertices along each side, the back has seven
-    for (const SeamPair& pair : pairs) {
-      EXPECT_NEAR(pair.gap.norm(), 0.2, 1e-7);
-      EXPECT_NEAR(pair.factor[0] + pair.factor[1] + pair.factor[2], 0, 1e-12);
-    }
-    EXPECT_GT(open(sewn), 4);
-    for (int frame = 0; frame < 7; ++frame) ASSERT_TRUE(sewn.play(frame));
-    EXPECT_GT(open(sewn), 2) << "half of the time is not all of it";
-    for (int frame = 7; frame < 24; ++frame) ASSERT_TRUE(sewn.play(frame));
-    EXPECT_LT(open(sewn), most) << integrator;
+  World sewn = world();
+  const std::vector<SeamPair>& pairs = sewn.body(0).model().seams.pairs;
+  EXPECT_EQ(pairs.size(), 18u);  // the front has nine vertices along each side, the back has seven
+  for (const SeamPair& pair : pairs) {
+    EXPECT_NEAR(pair.gap.norm(), 0.2, 1e-7);
+    EXPECT_NEAR(pair.factor[0] + pair.factor[1] + pair.factor[2], 0, 1e-12);
   }
+  EXPECT_GT(open(sewn), 4);
+  for (int frame = 0; frame < 7; ++frame) ASSERT_TRUE(sewn.play(frame));
+  EXPECT_GT(open(sewn), 2) << "half of the time is not all of it";
+  for (int frame = 7; frame < 24; ++frame) ASSERT_TRUE(sewn.play(frame));
+  EXPECT_LT(open(sewn), 0.01);
+}
+
+// Implicit midpoint damps nothing, so that what is left swings to and fro, as chance will have it: round-off alone
+// takes it from 0.03 to 0.3.
+TEST_F(SewnPanels, CloseByImplicitMidpointToo) {
+  std::vector<double> left;
+  for (const double gravity : {-9.81, -9.81 - 1e-9, -9.81 - 2e-9, -9.81 - 3e-9, -9.81 - 4e-9}) {
+    World sewn = world({"solver.integrator=implicit-midpoint", fmt::format("gravity=[0, {}, 0]", gravity)});
+    EXPECT_GT(open(sewn), 4);
+    for (int frame = 0; frame < 24; ++frame) ASSERT_TRUE(sewn.play(frame));
+    left.push_back(open(sewn));
+  }
+  std::sort(left.begin(), left.end());
+  EXPECT_LT(left[left.size() / 2], 0.1);
+  EXPECT_LT(left.back(), 1);
 }
 
 TEST_F(SewnPanels, TheWorkOfClosingIsInTheBalanceOfEnergy) {

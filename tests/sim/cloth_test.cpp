@@ -6,9 +6,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/variants.h"
 #include "geometry/meshes/cloth.h"
 #include "sim/elements/element_kernels.h"
 #include "sim/elements/triangle_stiffness.h"
+#include "sim/linear/linear_kernels.h"
 #include "sim/model/bending.h"
 #include "sim/solver/begin_step.h"
 #include "sim/solver/hessian_matrix.h"
@@ -205,6 +207,38 @@ TEST(Cloth, BendingKnowsNeitherPlaceNorTurnAndAFlatSheetHasNone) {
   elsewhere.rowwise() += Eigen::RowVector3d(1000, -2000, 500);
   EXPECT_NEAR(bending_energy(model, elsewhere), energy, 1e-8 * energy);
   EXPECT_LT(std::abs(bending_energy(model, flat)), 1e-12 * energy);
+}
+
+TEST(Cloth, ForcesOfBendingAreThoseOfTheRowsOfQOnEveryMachine) {
+  const Model model = build_model(test::sheet_of(uneven_grid(8, 2), {test::all_membranes().front(), 1e-4}));
+  const Positions bent = rolled(model.rest, 0.4, 0.7);
+  BendingRoom room;
+  room.take(bent.data(), model.vertices);
+  const Model::SparseRows& q = model.bending;
+  const DifferenceRows rows{q.begin.data(), q.column.data(), q.value.data()};
+  for (int variant = 0; variant < runnable_variants(); ++variant) {
+    const LinearKernels& kernels = linear_kernels(variant);
+    room.forces.assign(room.forces.size(), -1);
+    room.squares.assign(room.squares.size(), -1);
+    kernels.difference_rows(rows, room.places.data(), 3, model.vertices, room.forces.data(), room.squares.data());
+    EXPECT_EQ(room.squares[2], -1) << "rows before the first one were written";
+    kernels.difference_rows(rows, room.places.data(), 0, 3, room.forces.data(), room.squares.data());
+    double energy = 0, largest = 0, apart = 0;
+    for (int v = 0; v < model.vertices; ++v) {
+      energy -= 0.25 * room.squares[std::size_t(v)];
+      double row[3];
+      bending_row(q, bent.data(), v, row);
+      for (int c = 0; c < 3; ++c) {
+        largest = std::max(largest, std::abs(row[c]));
+        apart = std::max(apart, std::abs(room.forces[4 * std::size_t(v) + std::size_t(c)] - row[c]));
+      }
+    }
+    EXPECT_NEAR(energy, bending_energy(model, bent), 1e-12 * energy);
+    EXPECT_LT(apart, 1e-12 * largest);
+    const auto forces = room.forces;
+    kernels.difference_rows(rows, room.places.data(), 0, model.vertices, room.forces.data(), nullptr);
+    EXPECT_EQ(room.forces, forces) << "without squares";
+  }
 }
 
 }  // namespace cloth_test

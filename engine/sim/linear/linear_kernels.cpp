@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "base/lane_rows.h"
 #include "base/lanes.h"
 #include "base/variants.h"
 #include "sim/linear/column_kernels.h"
@@ -204,11 +205,36 @@ void add_scaled(const double* const* a, const double* c, int count, double* r, l
   }
 }
 
+template <bool with_squares>
+void add_difference_rows(const DifferenceRows& matrix, const double* z, int begin, int end, double* products,
+                         double* squares) {
+  for (int i = begin; i < end; ++i) {
+    Quad<double> own, sum{}, square{};
+    load_row(z + 4 * long(i), own);
+    for (std::int32_t k = matrix.first[i]; k < matrix.first[i + 1]; ++k) {
+      Quad<double> other;
+      load_row(z + 4 * long(matrix.column[k]), other);
+      const Quad<double> apart = other - own, part = matrix.value[k] * apart;
+      sum += part;
+      if constexpr (with_squares) square += part * apart;
+    }
+    store_row(sum, products + 4 * long(i));
+    if constexpr (with_squares) squares[i] = square[0] + square[1] + square[2];
+  }
+}
+
+void difference_rows(const DifferenceRows& matrix, const double* z, int begin, int end, double* products,
+                     double* squares) {
+  if (squares != nullptr) return add_difference_rows<true>(matrix, z, begin, end, products, squares);
+  add_difference_rows<false>(matrix, z, begin, end, products, nullptr);
+}
+
 }  // namespace
 
 extern const LinearKernels SUPPLE_TABLE(linear);
 const LinearKernels SUPPLE_TABLE(linear) = {
-    eliminate,    solve_down<float>, solve_up<float>,  solve_down<double>, solve_up<double>, down<float>, up<float>,
-    down<double>, up<double>,        down_many<float>, down_many<double>,  end_products,     dots,        add_scaled};
+    eliminate, solve_down<float>, solve_up<float>, solve_down<double>, solve_up<double>,  down<float>,
+    up<float>, down<double>,      up<double>,      down_many<float>,   down_many<double>, end_products,
+    dots,      add_scaled,        difference_rows};
 
 }  // namespace supple

@@ -30,6 +30,13 @@ struct FactorView {
   const void* numbers;  // float or double
 };
 
+// Holds a sparse matrix by rows, without its diagonal.
+struct DifferenceRows {
+  const std::int32_t* first;  // of a row's entries, and the end of the last row's
+  const std::int32_t* column;
+  const double* value;
+};
+
 struct LinearKernels {
   // Eliminates the pivots of a dense symmetric front that is stored as front_layout.h describes, with the padding and
   // everything above the diagonal set to 0. The columns become columns of L, and the update matrix becomes what
@@ -70,6 +77,13 @@ struct LinearKernels {
   void (*dots)(const double* const* a, int count, const double* b, long begin, long end, double* dots);
   // Adds sum_i c_i a_i to r over [begin, end).
   void (*add_scaled)(const double* const* a, const double* c, int count, double* r, long begin, long end);
+
+  // Multiplies n x 3 numbers by a sparse matrix whose rows add up to zero and are given without the diagonal, from
+  // differences: products[4 i] gets the sum of value (z_column - z_i), for the rows from `begin` to `end`. z and
+  // products: n x 4, of which the last column is unused. squares (null: not wanted) gets by row the sum of value
+  // |z_column - z_i|^2.
+  void (*difference_rows)(const DifferenceRows& matrix, const double* z, int begin, int end, double* products,
+                          double* squares);
 };
 
 // Returns the loops of the widest variant that this machine can run, or those of a given variant, which must be one

@@ -299,6 +299,15 @@ Vec3 sum_of(const Square& square, const Positions& x) {
 
 }  // namespace
 
+void BendingRoom::take(const double* x, int vertices) {
+  places.resize(4 * std::size_t(vertices));
+  forces.resize(places.size());
+  squares.resize(std::size_t(vertices));
+  for (std::size_t v = 0; v < squares.size(); ++v) {
+    for (std::size_t c = 0; c < 3; ++c) places[4 * v + c] = x[3 * v + c];
+  }
+}
+
 std::vector<JoinedVertices> joined_by_cloth(const BodyDescription& body) {
   std::vector<JoinedVertices> pairs;
   for (const FlatTriangle& triangle : body.cloth) {

@@ -14,6 +14,7 @@
 
 #include <vector>
 
+#include "base/aligned.h"
 #include "sim/model/model.h"
 
 namespace supple {
@@ -29,10 +30,11 @@ Eigen::SparseMatrix<double> bending_matrix(const Model& model, const BodyDescrip
 // what RestCurvature::index() makes.
 RestCurvature rest_curvature(const Model& model, const BodyDescription& body);
 
-// Computes row v of Q z, from differences, so that it does not depend on where the cloth is [N].
+// Computes row v of Q z, from differences, so that it does not depend on where the cloth is [N]. For many rows:
+// LinearKernels::difference_rows.
 inline void bending_row(const Model::SparseRows& bending, const double* z, int v, double (&row)[3]) {
   const double x = z[3 * std::size_t(v)], y = z[3 * std::size_t(v) + 1], up = z[3 * std::size_t(v) + 2];
-  double sum[3] = {0, 0, 0};  // stays in registers
+  double sum[3] = {0, 0, 0};
   for (std::int32_t k = bending.begin[v]; k < bending.begin[v + 1]; ++k) {
     const double* other = z + 3 * std::size_t(bending.column[k]);
     const double value = bending.value[k];
@@ -42,6 +44,16 @@ inline void bending_row(const Model::SparseRows& bending, const double* z, int v
   }
   for (int c = 0; c < 3; ++c) row[c] = sum[c];
 }
+
+// Holds what the multiplication of Q by places needs and finds, by vertex (LinearKernels::difference_rows).
+struct BendingRoom {
+  AlignedVector<double> places;  // n x 4 [m]
+  AlignedVector<double> forces;  // n x 4 [N]
+  std::vector<double> squares;   // n; minus four times a vertex's share of the energy [J]
+
+  // Takes the places of all vertices, n x 3.
+  void take(const double* x, int vertices);
+};
 
 // Returns the diagonal entry of row v of Q, which is minus the sum of the others [N/m].
 inline double bending_diagonal(const Model::SparseRows& bending, int v) {

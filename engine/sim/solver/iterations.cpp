@@ -116,11 +116,11 @@ void accept(const Model& model, const StepInputs& inputs, OpenWorkspace& w, Sear
   rule.accepted(model, inputs, w);
   if (may_touch(inputs)) change.value += take_contacts(w);
   const double learned = w.current.g - before;
-  w.trial.g = w.current.g + change.value;
+  w.trial.g = w.current.g + change.value - change.excess;
   std::swap(w.current, w.trial);
   ++w.report.iterations;
   w.report.objective.push_back(w.current.g);
-  w.report.decrease -= change.value;
+  w.report.decrease -= change.value - change.excess;
   record.decrease = -change.value - learned;
   record.elapsed_ms = w.clock.elapsed_ms();
   w.report.records.push_back(record);
@@ -242,6 +242,7 @@ bool Iterations::advance(const SearchLimits& limits) {
   Change change{};
   IterationRecord record;
   const double before = w_.current.g, slope = report.slope;
+  w_.is_last_iteration = report.iterations + 1 >= limits.iterations;
   const Search found = find_next(model_, inputs_, w_, rule_, slope, change, record);
   if (found != Search::found && go_over_to_double(model_, w_)) return true;
   const bool is_taken = found == Search::worse && limits.worse_iterate == WorseIterate::taken;

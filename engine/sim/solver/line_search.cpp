@@ -49,13 +49,17 @@ Search search_line(const Model& model, const StepInputs& inputs, OpenWorkspace& 
     // The first trial nearly always succeeds, and its gradient becomes that of the next iterate. After a rejection only
     // the energy decides.
     const bool with_gradient = halving == 0 || by_slope;
-    change = evaluate_trial(model, w, with_gradient ? Wanted::gradient : Wanted::value);
+    // What a search leaves is evaluated in double precision, and this may be it.
+    const bool is_end = halving == 0 && is_single && w.is_last_iteration;
+    change = is_end ? evaluate_trial_in_double(model, w)
+                    : evaluate_trial(model, w, with_gradient ? Wanted::gradient : Wanted::value);
     ++w.report.line_search;
     record.alpha = alpha;
     const bool accepted = by_slope ? decreases_by_slope(change, slope, solver.armijo, noise)
                                    : change.value <= solver.armijo * alpha * slope;
     if (halving == 0) record.full = {accepted, change.slope / slope};
     if (!accepted || !std::isfinite(change.value)) {
+      if (is_end) w.elements = Precision::single_precision;
       if (is_single && !std::isfinite(change.value)) return Search::failed;  // the range of single precision is small
       // Where slopes are lost in round-off too, shorter steps only repeat the noise. A thousandth of the noise stands
       // for a negligible distance, and a slope below the energy of the positions' last bits is noise itself.
@@ -65,7 +69,9 @@ Search search_line(const Model& model, const StepInputs& inputs, OpenWorkspace& 
     if (!with_gradient) change = evaluate_trial(model, w, Wanted::gradient);
     if (is_single && by_slope && !w.is_bowed)
       change.value = 0.5 * alpha * (slope + change.slope);  // nearer than values can tell
+    if (is_end) change.excess = w.current.g + change.value - w.trial.g;
     if (contacts_accept(model, inputs, w, change.value, noise)) return Search::found;
+    if (is_end) w.elements = Precision::single_precision;
     if (refused == 0 && may_learn && learn_contacts(model, inputs, w)) return Search::unforeseen;
     // A shorter step helps against contacts of which the current iterate cannot learn, but not where the energy itself
     // jumps (a vertex that passes an edge).

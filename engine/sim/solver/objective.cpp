@@ -6,6 +6,7 @@
 #include <span>
 
 #include "sim/elements/element_kernels.h"
+#include "sim/linear/linear_kernels.h"
 #include "sim/model/bending.h"
 #include "sim/model/vertex_chunks.h"
 
@@ -18,12 +19,6 @@ double quadratic_change(double weight, const double* point, const double* refere
   double sum = 0;
   for (int c = 0; c < 3; ++c) sum += (point[c] - reference[c]) * (point[c] + reference[c] - 2 * center[c]);
   return 0.5 * weight * sum;
-}
-
-double squared_distance(const double* a, const double* b) {
-  double sum = 0;
-  for (int c = 0; c < 3; ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
-  return sum;
 }
 
 double quadratic_value(double weight, const double* point, const double* center) {
@@ -46,6 +41,7 @@ struct VertexTerms {
   const double* reference_place;           // or null
   double* bending_forces;                  // takes the forces of bending
   const double* reference_bending_forces;  // those at the reference
+  BendingRoom& bent;                       // has the places
 
   // Computes row v of beta/h L (p - q).
   void drag(int v, const double* p, double (&sum)[3]) const {
@@ -83,8 +79,23 @@ struct VertexTerms {
     return value;
   }
 
+  // Finds the forces of bending at the vertices from `first` to `end`, which add() needs.
+  void find_bending(int first, int end) const {
+    if (place == nullptr) return;
+    const DifferenceRows rows{model.bending.begin.data(), model.bending.column.data(), model.bending.value.data()};
+    double* squares = reference_place == nullptr ? bent.squares.data() : nullptr;
+    const auto find = [&](int from, int to) {
+      linear_kernels().difference_rows(rows, bent.places.data(), from, to, bent.forces.data(), squares);
+    };
+    if (model.curvature.empty()) return find(first, end);
+    for (int v = first; v < end; ++v) {
+      if (!model.curvature.holds(v)) find(v, v + 1);
+    }
+  }
+
   // Adds the bending of held vertices to the value, without a reference.
   void add_held_bending(double& value) const {
+    find_bending(model.free, model.vertices);
     double unused[3];
     for (int v = model.free; v < model.vertices; ++v) {
       for (double& u : unused) u = 0;
@@ -104,20 +115,15 @@ struct VertexTerms {
   // - r)^T Q (z + r), to which held vertices, where z = r, add nothing. The force needs no factor, because e theta = 1.
   double add_bending(int v, double (&gradient)[3]) const {
     const std::size_t at = 3 * std::size_t(v);
-    double of_place[3], value = 0;
-    bending_row(model.bending, place, v, of_place);
-    for (int c = 0; c < 3; ++c) gradient[c] += of_place[c];
+    const double* force = &bent.forces[4 * std::size_t(v)];
+    for (int c = 0; c < 3; ++c) gradient[c] += force[c];
     if (v < model.free) {
-      for (int c = 0; c < 3; ++c) bending_forces[at + c] = of_place[c];
+      for (int c = 0; c < 3; ++c) bending_forces[at + c] = force[c];
     }
-    if (reference_place == nullptr) {
-      for (std::int32_t k = model.bending.begin[v]; k < model.bending.begin[v + 1]; ++k)
-        value -= 0.5 * model.bending.value[k] *
-                 squared_distance(place + at, place + 3 * std::size_t(model.bending.column[k]));
-      return 0.5 * model.scheme.energy * value;
-    }
+    if (reference_place == nullptr) return -0.25 * model.scheme.energy * bent.squares[std::size_t(v)];
+    double value = 0;
     for (int c = 0; c < 3; ++c)
-      value += (place[at + c] - reference_place[at + c]) * (of_place[c] + reference_bending_forces[at + c]);
+      value += (place[at + c] - reference_place[at + c]) * (force[c] + reference_bending_forces[at + c]);
     return 0.5 * model.scheme.energy * value;
   }
 
@@ -192,6 +198,7 @@ void add_vertices(const Model& model, OpenWorkspace& workspace, const VertexTerm
   run_chunks(workspace.threads, chunks, long(model.free) * (gradient != nullptr ? 6 : 2), [&](int c) {
     double value = 0, slope = 0;
     const int end = std::min(model.free, (c + 1) * vertices_a_chunk);
+    terms.find_bending(c * vertices_a_chunk, end);
     for (int v = c * vertices_a_chunk; v < end; ++v) {
       double sum[3];
       value += terms.add(v, sum);
@@ -273,7 +280,9 @@ Change evaluate_against(const Model& model, OpenWorkspace& workspace, Iterate& a
                           bends ? place_of(at.x, workspace.middle) : nullptr,
                           bends && reference != nullptr ? place_of(reference->x, workspace.reference_middle) : nullptr,
                           bends ? at.bending_forces.data() : nullptr,
-                          bends && reference != nullptr ? reference->bending_forces.data() : nullptr};
+                          bends && reference != nullptr ? reference->bending_forces.data() : nullptr,
+                          workspace.bent};
+  if (bends) workspace.bent.take(terms.place, model.vertices);
   add_vertices(model, workspace, terms, gradient, change);
   const SewnPlaces sewn_places{place_of(at.x, workspace.middle),
                                reference != nullptr ? place_of(reference->x, workspace.reference_middle) : nullptr};
@@ -293,6 +302,15 @@ Change evaluate_trial(const Model& model, OpenWorkspace& workspace, Wanted wante
   const Change change =
       evaluate_against(model, workspace, workspace.trial, workspace.current.contacts, &workspace.current, wanted);
   workspace.trial.g = workspace.current.g + change.value;
+  return change;
+}
+
+Change evaluate_trial_in_double(const Model& model, OpenWorkspace& workspace) {
+  workspace.elements = Precision::double_precision;
+  Change change =
+      evaluate_against(model, workspace, workspace.trial, workspace.current.contacts, nullptr, Wanted::gradient);
+  workspace.trial.g = change.value;
+  change.value -= workspace.current.g;
   return change;
 }
 

@@ -20,6 +20,8 @@ enum class Wanted { value, gradient };
 struct Change {
   double value;  // g(trial) - g(current) [J]
   double slope;  // tr(grad(trial)^T direction), where the gradient was wanted [J]
+  // Where the trial iterate alone was evaluated in double precision: how far g(current) + value is above g(trial) [J].
+  double excess = 0;
 };
 
 // Evaluates g at iterate.x with iterate.contacts: sets its g and energies, and its gradient where that is wanted.
@@ -29,6 +31,10 @@ void evaluate(const Model& model, OpenWorkspace& workspace, Iterate& iterate, Wa
 // summed element by element and vertex by vertex. Also sets trial.g, the trial's energies, and its gradient where that
 // is wanted.
 Change evaluate_trial(const Model& model, OpenWorkspace& workspace, Wanted wanted);
+
+// Does the same in double precision from a current iterate that was evaluated in single precision: trial.g and its
+// energies are evaluated by themselves, and the value is the difference of both g.
+Change evaluate_trial_in_double(const Model& model, OpenWorkspace& workspace);
 
 // Returns the round-off of differences of g at a point with this objective and largest coordinate [J].
 double noise_of(const Model& model, double objective, double extent);

@@ -13,6 +13,7 @@
 #include "sim/coarse/turning.h"
 #include "sim/contact/contact_direction.h"
 #include "sim/contact/find_contacts.h"
+#include "sim/model/bending.h"
 #include "sim/model/report.h"
 #include "sim/model/tangent_system.h"
 #include "sim/model/turned_hessian_system.h"
@@ -46,8 +47,9 @@ struct OpenWorkspace {
   // The precision in which the elements of iterates are evaluated (element_precision.h). Outside of searches it is
   // double.
   Precision elements = Precision::double_precision;
-  bool began_in_single = false;  // whether the first direction of the step was worth single precision
-  Positions direction;           // from the current iterate, n_free x 3 [m]
+  bool began_in_single = false;    // whether the first direction of the step was worth single precision
+  bool is_last_iteration = false;  // whether the present iteration is the last one that its search may make
+  Positions direction;             // from the current iterate, n_free x 3 [m]
 
   // The matrix that directions of the present step start from: the model's own A, or the one that follows the body.
   // Where turned_hessian_serves is true, directions from iterates without contacts start from the turned Hessian
@@ -84,6 +86,7 @@ struct OpenWorkspace {
   // The following members are memory within one call and hold nothing between calls.
   Positions middle;             // where forces are evaluated, n x 3 [m]; empty where that is the iterate itself
   Positions reference_middle;   // the same for the current iterate; empty without bending and seams
+  BendingRoom bent;             // forces of bending
   CurvatureRoom curvature;      // forces of cloth that is curved at rest
   Positions scratch;            // n_free x 3
   AlignedVector<double> force;  // by slot, x list_stride [N]
