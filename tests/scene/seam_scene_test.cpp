@@ -75,7 +75,9 @@ TEST_F(SewnPanels, CloseByImplicitMidpointToo) {
   for (const double gravity : {-9.81, -9.81 - 1e-9, -9.81 - 2e-9, -9.81 - 3e-9, -9.81 - 4e-9}) {
     World sewn = world({"solver.integrator=implicit-midpoint", fmt::format("gravity=[0, {}, 0]", gravity)});
     EXPECT_GT(open(sewn), 4);
-    for (int frame = 0; frame < 24; ++frame) ASSERT_TRUE(sewn.play(frame));
+    for (int frame = 0; frame < 7; ++frame) ASSERT_TRUE(sewn.play(frame));
+    EXPECT_GT(open(sewn), 2);
+    for (int frame = 7; frame < 24; ++frame) ASSERT_TRUE(sewn.play(frame));
     left.push_back(open(sewn));
   }
   std::sort(left.begin(), left.end());

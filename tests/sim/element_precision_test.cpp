@@ -68,6 +68,24 @@ TEST(ElementPrecision, WhatAStepLeavesIsDouble) {
 }
 
 // A step of 1,000 iterations goes on until nothing is left, below what single precision can tell.
+TEST(ElementPrecision, ElementsThatAreAlikeErrToOneSideByNoMoreThanTheBias) {
+  // Lengths of 1/80 of these are no numbers of single precision.
+  const Membrane membrane = test::all_membranes().front();
+  for (const double extent : {14.5, 1.6, 10.0}) {
+    const Model sheet = build_model(test::sheet({extent, extent}, {40, 40}, {membrane, 0}));
+    OpenWorkspace w;
+    w.prepare(sheet, {});
+    w.y = sheet.rest;
+    w.current.x = 1.03 * sheet.rest;
+    evaluate(sheet, w, w.current, Wanted::value);
+    const double exact = w.current.elastic;
+    w.elements = Precision::single_precision;
+    evaluate(sheet, w, w.current, Wanted::value);
+    EXPECT_NE(w.current.elastic, exact);
+    EXPECT_LT(std::abs(w.current.elastic - exact), single_bias_of(sheet, exact)) << extent;
+  }
+}
+
 TEST(ElementPrecision, ASearchGoesOverToDoubleBeforeRoundOffMatters) {
   double left[2];
   for (const Precision elements : {Precision::single_precision, Precision::double_precision}) {

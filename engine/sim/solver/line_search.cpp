@@ -41,26 +41,29 @@ Search search_line(const Model& model, const StepInputs& inputs, OpenWorkspace& 
   const bool is_single = w.elements == Precision::single_precision;
   const double noise =
       noise_of(model, w.current.g, extent_of(model, w)) + (is_single ? single_noise_of(model, w.current.elastic) : 0);
+  const double end_noise = noise + (w.is_last_iteration ? single_bias_of(model, w.current.elastic) : 0);
   double alpha = 1;
   int refused = 0;
   for (int halving = 0; halving <= most_halvings; ++halving, alpha /= 2) {
     set_trial(model, w, alpha);
-    const bool by_slope = -alpha * slope < noise / solver.armijo;
+    // What a search leaves is evaluated in double precision, and this may be it. Values of both precisions differ by
+    // more than those of one, so slopes decide sooner.
+    const bool is_end = halving == 0 && is_single && w.is_last_iteration && !w.is_bowed;
+    const bool by_slope = -alpha * slope < (is_end ? 10 * end_noise : noise) / solver.armijo;
     // The first trial nearly always succeeds, and its gradient becomes that of the next iterate. After a rejection only
     // the energy decides.
     const bool with_gradient = halving == 0 || by_slope;
-    // What a search leaves is evaluated in double precision, and this may be it.
-    const bool is_end = halving == 0 && is_single && w.is_last_iteration;
     change = is_end ? evaluate_trial_in_double(model, w)
                     : evaluate_trial(model, w, with_gradient ? Wanted::gradient : Wanted::value);
     ++w.report.line_search;
     record.alpha = alpha;
-    const bool accepted = by_slope ? decreases_by_slope(change, slope, solver.armijo, noise)
+    const bool accepted = by_slope ? decreases_by_slope(change, slope, solver.armijo, is_end ? end_noise : noise)
                                    : change.value <= solver.armijo * alpha * slope;
     if (halving == 0) record.full = {accepted, change.slope / slope};
     if (!accepted || !std::isfinite(change.value)) {
       if (is_end) w.elements = Precision::single_precision;
-      if (is_single && !std::isfinite(change.value)) return Search::failed;  // the range of single precision is small
+      const bool is_beyond_range = is_single && !is_end && !std::isfinite(change.value);
+      if (is_beyond_range) return Search::failed;  // the range of single precision is small
       // Where slopes are lost in round-off too, shorter steps only repeat the noise. A thousandth of the noise stands
       // for a negligible distance, and a slope below the energy of the positions' last bits is noise itself.
       if (by_slope && -slope < 1e-3 * noise + noise_of(model, 0, extent_of(model, w))) return Search::exhausted;

@@ -41,7 +41,7 @@ struct VertexTerms {
   const double* reference_place;           // or null
   double* bending_forces;                  // takes the forces of bending
   const double* reference_bending_forces;  // those at the reference
-  BendingRoom& bent;                       // has the places
+  BendingRoom& bent;                       // has the places; takes what find_bending() finds
 
   // Computes row v of beta/h L (p - q).
   void drag(int v, const double* p, double (&sum)[3]) const {
@@ -334,6 +334,13 @@ double single_noise_of(const Model& model, double elastic) {
   const double energy = std::abs(elastic), stiffness = model.strain_stiffness;
   return single_round_off *
          (energy + 4 * std::sqrt(2 * energy * stiffness / model.elements) + 4 * single_round_off * stiffness);
+}
+
+// The fields of an element are off by u, so its F is, too, and the stress k e of a strain e does the work u k V e. Over
+// all elements, the sum of k V e is at most sqrt(2 E sum k V).
+double single_bias_of(const Model& model, double elastic) {
+  const double energy = std::abs(elastic);
+  return 2 * single_round_off * (energy + std::sqrt(2 * energy * model.strain_stiffness));
 }
 
 double inertial_energy(const Model& model, const OpenWorkspace& workspace, const Positions& x) {

@@ -1,7 +1,7 @@
 // Evaluates g(x) of equation 3, or of another integrator or with damping, at iterates: values, value differences
-// without cancellation, and gradients, in a fixed order of summation. Contacts are added as contact.h has them, and air
-// as sim/air/air_forces.h has it. Not here: where to evaluate next (lbfgs.h for directions, line_search.h for points
-// along them, iterations.h for the loop).
+// without cancellation (within one precision), and gradients, in a fixed order of summation. Contacts are added as
+// contact.h has them, and air as sim/air/air_forces.h has it. Not here: where to evaluate next (lbfgs.h for directions,
+// line_search.h for points along them, iterations.h for the loop).
 #pragma once
 
 #include "sim/solver/open_workspace.h"
@@ -45,6 +45,10 @@ constexpr double single_round_off = 0x1p-24;
 // Returns the round-off of differences of g where elements are evaluated in single precision; elastic: their energy
 // [J].
 double single_noise_of(const Model& model, double elastic);
+
+// Returns how far g in single precision may be from g in double precision [J]. Elements that are alike are rounded
+// alike, and all of them err to one side; between two values of one precision, this cancels.
+double single_bias_of(const Model& model, double elastic);
 
 // Returns the share of inertia in g at x, sum of w m |x - y|^2 / (2 h^2), where w is the integrator's weight [J].
 double inertial_energy(const Model& model, const OpenWorkspace& workspace, const Positions& x);
