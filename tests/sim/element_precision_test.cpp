@@ -69,9 +69,9 @@ TEST(ElementPrecision, WhatAStepLeavesIsDouble) {
 
 // A step of 1,000 iterations goes on until nothing is left, below what single precision can tell.
 TEST(ElementPrecision, ElementsThatAreAlikeErrToOneSideByNoMoreThanTheBias) {
-  // Lengths of 1/80 of these are no numbers of single precision.
+  // A fortieth of these is no number of single precision.
   const Membrane membrane = test::all_membranes().front();
-  for (const double extent : {14.5, 1.6, 10.0}) {
+  for (const double extent : {14.5, 1.6, 3.3}) {
     const Model sheet = build_model(test::sheet({extent, extent}, {40, 40}, {membrane, 0}));
     OpenWorkspace w;
     w.prepare(sheet, {});

@@ -18,7 +18,7 @@ enum class Search {
 // the accepted point in workspace.trial, with gradient and energies by the contacts of the current iterate and, in its
 // contacts, those found there. may_learn: whether the search may end as `unforeseen` (learn_contacts()); otherwise
 // steps become shorter. `record` gets the step length and the results of the full step. Where the present iteration may
-// be the search's last one, and the full step is taken, elements are in double precision from then on.
+// be the search's last one, and a full step that is no arc is taken, elements are in double precision from then on.
 Search search_line(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, double slope, bool may_learn,
                    Change& change, IterationRecord& record);
 

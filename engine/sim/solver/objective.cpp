@@ -336,8 +336,8 @@ double single_noise_of(const Model& model, double elastic) {
          (energy + 4 * std::sqrt(2 * energy * stiffness / model.elements) + 4 * single_round_off * stiffness);
 }
 
-// The fields of an element are off by u, so its F is, too, and the stress k e of a strain e does the work u k V e. Over
-// all elements, the sum of k V e is at most sqrt(2 E sum k V).
+// The fields of an element are off by u, and so are its edges; so its F is off by 2 u, and the stress k e of a strain e
+// does the work 2 u k V e. Over all elements, the sum of k V e is at most sqrt(2 E sum k V).
 double single_bias_of(const Model& model, double elastic) {
   const double energy = std::abs(elastic);
   return 2 * single_round_off * (energy + std::sqrt(2 * energy * model.strain_stiffness));

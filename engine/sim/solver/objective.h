@@ -46,8 +46,8 @@ constexpr double single_round_off = 0x1p-24;
 // [J].
 double single_noise_of(const Model& model, double elastic);
 
-// Returns how far g in single precision may be from g in double precision [J]. Elements that are alike are rounded
-// alike, and all of them err to one side; between two values of one precision, this cancels.
+// Estimates how far g in single precision is from g in double precision [J]. Elements that are alike are rounded alike,
+// and all of them err to one side; between two values of one precision, this mostly cancels.
 double single_bias_of(const Model& model, double elastic);
 
 // Returns the share of inertia in g at x, sum of w m |x - y|^2 / (2 h^2), where w is the integrator's weight [J].
