@@ -32,7 +32,7 @@ struct FactorView {
 
 // Holds a sparse matrix by rows, without its diagonal.
 struct DifferenceRows {
-  const std::int32_t* first;  // of a row's entries, and the end of the last row's
+  const std::int32_t* first;  // where each row's entries begin, and where the last row's end
   const std::int32_t* column;
   const double* value;
 };

@@ -2,8 +2,8 @@
 // 0.6 of the time, and goes over to double where single precision is no longer enough: gradients, and so directions,
 // then have as much round-off as there is left to gain. Where it goes over depends on states alone. What a search
 // leaves is always evaluated in double precision, so that energies, errors and remaining gradients in reports are
-// double: the last iteration's first trial is evaluated so (line_search.cpp), or the last iterate again. g of the
-// iterates before has the round-off of single precision (objective.h).
+// double: either the last iteration's first trial is evaluated so (line_search.cpp), or its last iterate is evaluated
+// again. g of the iterates before has the round-off of single precision (objective.h).
 #pragma once
 
 #include "sim/solver/step_context.h"
